@@ -1,0 +1,93 @@
+// Show → Plan: everything about a frame that is geometry and follows from the show alone. Pure, no GL, any
+// thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "configs/model/problem.h"
+#include "configs/model/show.h"
+#include "renderer/projection/map.h"
+
+namespace cupola::plan {
+
+/// Pixels of an output, x to the right and y downwards from the top left corner, as rows lie in files.
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const PixelRect&) const = default;
+};
+
+/// A part of a viewport that is drawn with one perspective projection [Lorenz & Döllner, sec. 2].
+/// For a point v in view space, h = to_screen · v is homogeneous in the viewport's normalised device
+/// coordinates: (x·w, y·w, w), x right, y up, [-1,1]; w > 0 in front. w is continuous over all pieces of a
+/// set, so one depth convention (near / w, reversed) holds for the whole viewport.
+struct Piece {
+  glm::dmat3 to_screen;
+  /// Inside where dot(plane, v) >= 0 for all: two for a strip (left, right), three for a triangle.
+  std::array<glm::dvec3, 3> planes;
+  int plane_count = 0;
+  PixelRect bounds; ///< pixels of the output that it may touch; strips: exactly these
+};
+
+/// All pieces of a viewport. Strips stand in order from left to right.
+struct PieceSet {
+  std::vector<Piece> pieces;
+  bool strips = false;    ///< pieces are full-height columns: a scissor can replace the planes
+  double max_error = 0.0; ///< pixels between the true projection and the pieces, sampled inside pieces
+  double rms_error = 0.0;
+};
+
+/// Faces in GL order: +x −x +y −y +z −z, in view axes (the cubemap turns with the camera).
+struct CubeFace {
+  bool seen = false;
+  PixelRect crop; ///< the part of the face that is seen, in face pixels, y downwards as GL's face t runs
+};
+struct CubemapPlan {
+  int size = 0; ///< pixels along an edge
+  std::array<CubeFace, 6> faces;
+};
+
+struct ViewportPlan {
+  std::string name;
+  PixelRect rect; ///< in output pixels, before supersampling
+  projection::Map map;
+  model::Method method{};
+  std::optional<PieceSet> pieces; ///< method piecewise
+};
+
+struct OutputPlan {
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<ViewportPlan> viewports; ///< in drawing order
+};
+
+struct Plan {
+  std::vector<OutputPlan> outputs;
+  std::optional<CubemapPlan>
+      cubemap; ///< one for all viewports with method cubemap: size and faces are their union
+};
+
+struct Planned {
+  Plan plan;
+  model::Problems warnings;
+};
+
+/// Fails with all geometric problems of the show; their positions are left empty, pointers are filled.
+/// Precondition: the show has passed the loader's checks.
+[[nodiscard]] model::Result<Planned> make_plan(const model::Show& show);
+
+/// The strips of a cylinder [Lorenz & Döllner, sec. 3.1], as few as keep within `max_error` pixels; also of a
+/// perspective, which is one piece.
+[[nodiscard]] std::optional<PieceSet> make_strips(const projection::Map& map, const PixelRect& rect,
+                                                  double max_error);
+
+/// Size and seen parts of the cubemap for one viewport. `size`: given, or by the greatest pixel density.
+[[nodiscard]] CubemapPlan make_cubemap(const projection::Map& map, const PixelRect& rect,
+                                       std::optional<int> size);
+
+} // namespace cupola::plan
