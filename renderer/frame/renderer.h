@@ -1,0 +1,71 @@
+// Realises stages as GL objects and draws them into one texture per output. Render thread only, with its
+// context current; knows nothing of windows, files or clocks.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "configs/model/problem.h"
+#include "renderer/frame/stage.h"
+
+namespace cupola::frame {
+
+/// The driver, in words and limits.
+struct Device {
+  std::string name;    ///< GL_RENDERER
+  std::string version; ///< GL_VERSION
+  bool software = false;
+  int max_samples = 1;
+  int max_anisotropy = 1;
+  int max_texture = 0; ///< pixels along an edge
+};
+
+/// A finished picture: a GL_TEXTURE_2D, SRGB8_ALPHA8, GL's row 0 at the bottom. Valid until the next draw().
+struct Picture {
+  std::string output;
+  unsigned texture = 0;
+  int width = 0, height = 0;
+};
+
+struct FrameStatistics {
+  std::uint64_t revision = 0;     ///< of the stage that was drawn
+  std::uint64_t triangles = 0;    ///< of the scene
+  std::uint64_t drawn = 0;        ///< triangles sent to the rasteriser over all viewports
+  std::uint64_t replicated = 0;   ///< (triangle, piece) pairs of all piecewise viewports
+  std::uint64_t vertex_bytes = 0; ///< of all vertex and index buffers in use
+  bool uploading = false;         ///< a newer stage is being realised beside this one
+};
+
+class Renderer {
+public:
+  /// Fails when the current context is not OpenGL 4.5 core or a shader does not compile.
+  [[nodiscard]] static model::Result<std::unique_ptr<Renderer>> make();
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  [[nodiscard]] const Device& device() const;
+
+  /// The stage to draw from now on. The first one is realised at once; a later one beside the running one,
+  /// its uploads spread over frames, then swapped in between two frames; until then the old one is drawn.
+  /// A newer call replaces a stage still waiting. Cheap when only plain values differ.
+  void set_stage(std::shared_ptr<const Stage> stage);
+
+  /// Problems of the last stage that could not be realised (the old one goes on); empties the list.
+  [[nodiscard]] model::Problems take_problems();
+
+  /// Draws all outputs at show time `time` (seconds). No stage yet: draws nothing, revision 0.
+  FrameStatistics draw(double time);
+
+  /// One per output of the stage drawn last.
+  [[nodiscard]] const std::vector<Picture>& pictures() const;
+
+private:
+  struct Impl;
+  explicit Renderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace cupola::frame
