@@ -171,7 +171,8 @@ const Type& camera_type() {
           .list("path", &Camera::path, keyframe_type(), {0, 10'000}, Cost::uniform,
                 "Key frames with rising times. While there are any, the camera follows them.")
           .boolean("loop", &Camera::loop, Cost::uniform, "The path starts again after its last key frame.")
-          .number("near", &Camera::near, Unit::metre, Range{1e-4, 1e4}, Cost::uniform, "Nothing nearer is drawn.")
+          .number("near", &Camera::near, Unit::metre, Range{1e-4, 1e4}, Cost::uniform,
+                  "Nothing nearer is drawn.")
           .take();
   return type;
 }
