@@ -25,3 +25,29 @@ function(cupola_test name)
     set_tests_properties(${name} PROPERTIES LABELS slow)
   endif()
 endfunction()
+
+# cupola_script_test(NAME SCRIPT file [ARGUMENTS word...] [SLOW] [TIMEOUT seconds] [ALONE])
+# A test run by python3 (.py) or node (.mjs). Exit status 77 skips it whole; a line "SKIP NAME: REASON" says why, and
+# also reports a single case as skipped. What else tests/support/tally.py counts stands in its header. ALONE: no
+# other test runs meanwhile.
+function(cupola_script_test name)
+  cmake_parse_arguments(TEST "SLOW;ALONE" "SCRIPT;TIMEOUT" "ARGUMENTS" ${ARGN})
+  if(TEST_SCRIPT MATCHES "\\.mjs$")
+    set(interpreter node)
+  else()
+    set(interpreter python3)
+  endif()
+  add_test(NAME ${name}
+    COMMAND env PYTHONDONTWRITEBYTECODE=1 ${interpreter} ${CMAKE_CURRENT_SOURCE_DIR}/${TEST_SCRIPT} ${TEST_ARGUMENTS}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  if(NOT TEST_TIMEOUT)
+    set(TEST_TIMEOUT 120)
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} SKIP_RETURN_CODE 77)
+  if(TEST_SLOW)
+    set_tests_properties(${name} PROPERTIES LABELS slow)
+  endif()
+  if(TEST_ALONE)
+    set_tests_properties(${name} PROPERTIES RUN_SERIAL ON)
+  endif()
+endfunction()
