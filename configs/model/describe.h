@@ -1,6 +1,7 @@
 // Builder for rows of the parameter table: the only place that knows how a C++ member becomes JSON.
 #pragma once
 
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -140,9 +141,12 @@ public:
     };
     row.entry = [member](const void* owner, std::string_view key) -> const void* {
       const auto& all = static_cast<const T*>(owner)->*member;
-      for (std::size_t i = 0; i < all.size(); ++i)
-        if (std::to_string(i) == key) return &all[i];
-      return nullptr;
+      std::size_t index = 0;
+      const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), index);
+      const bool canonical = !key.empty() && (key.size() == 1 || key.front() != '0');
+      if (error != std::errc{} || end != key.data() + key.size() || !canonical || index >= all.size())
+        return nullptr;
+      return &all[index];
     };
     row.clear = [member](void* owner) { (static_cast<T*>(owner)->*member).clear(); };
     row.add = [member](void* owner, std::string_view) -> void* {

@@ -149,16 +149,6 @@ void compare_entries(const Parameter& row, const void* a, const void* b, const s
 
 void compare(const Type& type, const void* a, const void* b, const std::string& prefix,
              std::vector<Difference>& out) {
-  const void* held_a = a;
-  const void* held_b = b;
-  if (!type.alternatives.empty()) {
-    if (type.active(a) != type.active(b)) {
-      out.push_back({prefix + "/kind", type.kind_cost});
-    } else {
-      held_a = type.held(a);
-      held_b = type.held(b);
-    }
-  }
   const auto compare_row = [&](const Parameter& row, const void* owner_a, const void* owner_b) {
     const std::string here = prefix + '/' + row.name;
     if (row.kind == Kind::object)
@@ -168,9 +158,13 @@ void compare(const Type& type, const void* a, const void* b, const std::string& 
     else if (row.read(owner_a) != row.read(owner_b))
       out.push_back({here, row.cost});
   };
-  if (held_a != a)
-    for (const Parameter& row : type.alternatives[type.active(a)].type->rows)
-      compare_row(row, held_a, held_b);
+  if (!type.alternatives.empty()) {
+    if (type.active(a) != type.active(b))
+      out.push_back({prefix + "/kind", type.kind_cost});
+    else
+      for (const Parameter& row : type.alternatives[type.active(a)].type->rows)
+        compare_row(row, type.held(a), type.held(b));
+  }
   for (const Parameter& row : type.rows) compare_row(row, a, b);
 }
 

@@ -31,6 +31,8 @@ std::string to_text(const Problem& problem) {
   }
   text += problem.severity == Severity::warning ? "warning: " : "error: ";
   if (!problem.pointer.empty()) text += problem.pointer + ": ";
+  if (problem.expected.empty() && problem.found.empty())
+    text += code_texts()[static_cast<std::size_t>(problem.code)].title;
   if (!problem.expected.empty()) text += "expected " + problem.expected;
   if (!problem.found.empty()) text += (problem.expected.empty() ? "found " : ", found ") + problem.found;
   text += '.';
@@ -56,14 +58,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+/// Upper case and hyphens do not count as slips.
+std::string plain_spelling(std::string_view word) {
+  std::string out(word);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (c == '-' || c == ' ') c = '_';
+  }
+  return out;
+}
+
 } // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.size() > 256) return {};
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  // Two slips in a short word could mean anything.
+  std::size_t best_distance = (word.size() <= 3 ? 1 : std::max<std::size_t>(2, word.size() / 3)) + 1;
+  const std::string plain_word = plain_spelling(word);
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
+    const std::size_t distance = edit_distance(plain_word, plain_spelling(candidate));
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -41,10 +41,10 @@ struct Position {
 
 struct Problem {
   Code code{};
-  std::string pointer;  ///< JSON pointer of the value (RFC 6901), "" for the whole document
-  std::string expected; ///< what would have been right
-  std::string found;    ///< what was there instead
-  std::string advice;   ///< what to do about it; may be empty
+  std::string pointer{};  ///< JSON pointer of the value (RFC 6901), "" for the whole document
+  std::string expected{}; ///< what would have been right
+  std::string found{};    ///< what was there instead
+  std::string advice{};   ///< what to do about it; may be empty
   Position at{};
   Severity severity = Severity::error;
   bool operator==(const Problem&) const = default;
