@@ -83,6 +83,7 @@ struct Style {
   StyleKind kind = StyleKind::textured;
   double line_width = 1.2;   ///< pixels: edges of `wireframe`, strokes of `hatching`
   double line_spacing = 7.0; ///< pixels between the strokes of `hatching`
+  double line_fade = 150.0;  ///< metres at which the edges of `wireframe` are half as strong
   bool operator==(const Style&) const = default;
 };
 

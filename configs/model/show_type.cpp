@@ -129,6 +129,8 @@ const Type& style_type() {
                   "Width of wireframe lines and hatching strokes.")
           .number("line_spacing", &Style::line_spacing, Unit::pixel, Range{2, 256}, Cost::uniform,
                   "Distance between hatching strokes.")
+          .number("line_fade", &Style::line_fade, Unit::metre, Range{0.1, 1e6}, Cost::uniform,
+                  "Distance at which wireframe lines are half as strong.")
           .take();
   return type;
 }
