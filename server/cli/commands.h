@@ -11,6 +11,7 @@ using ExitCode = int;
 inline constexpr ExitCode exit_done = 0, exit_no = 1, exit_unusable = 2;
 
 void add_validate(CLI::App& app, ExitCode& exit_code);
+void add_compare(CLI::App& app, ExitCode& exit_code);
 void add_schema(CLI::App& app, ExitCode& exit_code);
 
 } // namespace cupola::cli

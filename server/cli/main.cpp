@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   ExitCode exit_code = exit_done;
 
   add_validate(app, exit_code);
+  add_compare(app, exit_code);
   add_schema(app, exit_code);
 
   try {
