@@ -81,7 +81,7 @@ void Readback::blit(unsigned from, int from_width, int from_height, unsigned to,
 
 /// By halves, then the rest: a single bilinear step would skip pixels. Averaged in linear light.
 unsigned Readback::scaled_down(const Frame& frame, int width, int height) {
-  const bool scissor = glIsEnabled(GL_SCISSOR_TEST);
+  const bool scissor = glIsEnabled(GL_SCISSOR_TEST), encoding = glIsEnabled(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_SCISSOR_TEST);
   glEnable(GL_FRAMEBUFFER_SRGB);
   unsigned from = frame.texture;
@@ -96,7 +96,7 @@ unsigned Readback::scaled_down(const Frame& frame, int width, int height) {
     from_height = to_height;
     next = next == &ping_ ? &pong_ : &ping_;
   }
-  glDisable(GL_FRAMEBUFFER_SRGB);
+  if (!encoding) glDisable(GL_FRAMEBUFFER_SRGB);
   if (scissor) glEnable(GL_SCISSOR_TEST);
   return from;
 }
