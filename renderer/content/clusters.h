@@ -1,0 +1,26 @@
+// From triangles in any order to the clusters that scene.h promises. Pure.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "renderer/content/scene.h"
+
+namespace cupola::content {
+
+inline constexpr std::uint32_t cluster_triangles = 256; ///< at most
+
+/// Fills `indices` and `clusters` of a geometry whose vertices stand already. triangles[m]: index triples of
+/// material m; emptied on the way. Clusters are split along their longest side, so they are compact; the same
+/// input gives the same clusters on every machine.
+void make_clusters(Geometry& geometry, std::vector<std::vector<std::uint32_t>>& triangles,
+                   const std::vector<Material>& materials);
+
+/// Sets a cluster's sphere: around the middle of its box, through its farthest vertex.
+void set_bounds(Cluster& cluster, std::span<const Vertex> vertices, std::span<const std::uint32_t> indices);
+
+/// Sets the scene's box from its vertices; all zero when there are none.
+void set_scene_bounds(Scene& scene);
+
+} // namespace cupola::content
