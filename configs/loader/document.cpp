@@ -2,6 +2,9 @@
 // cursor that steps over white space, comments and punctuation always lands on the token just reported.
 #include "configs/loader/document.h"
 
+#include <algorithm>
+#include <map>
+#include <optional>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -134,6 +137,13 @@ Sentence take_apart(std::string_view what) {
   Sentence out{between("while parsing ", " - "), between("; expected ", "\n"),
                between(" - unexpected ", ";")};
   if (out.found.empty()) out.found = between(" - ", ";");
+  const auto say = [](std::string& text, const std::map<std::string_view, std::string_view>& words) {
+    if (const auto word = words.find(text); word != words.end()) text = word->second;
+  };
+  say(out.expected, {{"string literal", out.context == "object key" ? "a key in double quotes" : "a text"},
+                     {"'[', '{', or a literal", "a value"},
+                     {"end of input", "the end of the text"}});
+  say(out.found, {{"string literal", "a text"}, {"number literal", "a number"}});
   return out;
 }
 
@@ -226,6 +236,8 @@ private:
   void explain(Problem& problem, std::string_view rest, std::size_t start) const {
     const std::size_t before = text_.substr(0, start).find_last_not_of(" \t\r\n");
     if (problem.expected.empty()) problem.expected = "JSON";
+    if (problem.found == "invalid literal")
+      problem.found = in_quotes(rest.substr(0, rest.find_first_of(" \t\r\n,:]}")));
     if ((rest[0] == '}' || rest[0] == ']') && before != std::string_view::npos && text_[before] == ',')
       problem.advice = "Remove the comma before it.";
     else if (rest.starts_with("NaN") || rest.starts_with("nan") || rest.starts_with("Inf") ||
@@ -235,8 +247,10 @@ private:
       problem.advice = "Texts and keys stand in double quotes.";
     else if (rest[0] == '#')
       problem.advice = "Comments start with //.";
-    else if (rest[0] == '"' && problem.found.starts_with("string literal"))
+    else if (rest[0] == '"' && problem.found == "a text")
       problem.advice = "Is a comma or a colon missing before it?";
+    else if (rest[0] == '"' && problem.found.ends_with("missing closing quote"))
+      problem.advice = "Is the file complete?";
   }
 
   bool remember(const std::string& pointer) {

@@ -18,6 +18,7 @@ constexpr std::size_t longest_quote = 60;
 std::string range_text(const Parameter& row) {
   if (!row.range) return {};
   const model::Range& range = *row.range;
+  if (range.min == range.max) return "that is " + plain(range.min);
   std::string text = range.min_exclusive ? "above " + plain(range.min) + " and at most "
                                          : "from " + plain(range.min) + " to ";
   text += plain(range.max);
@@ -44,15 +45,19 @@ std::string shown(const Json& value) {
     if (value.empty()) return "an empty array";
     return "an array of " + std::to_string(value.size()) + (value.size() == 1 ? " value" : " values");
   }
-  if (value.is_number_float() && !std::isfinite(value.get<double>())) return "a number that is not finite";
+  if (value.is_number_float())
+    return std::isfinite(value.get<double>()) ? plain(value.get<double>()) : "a number that is not finite";
   return value.dump();
 }
 
 std::string plain(double value) {
   if (std::abs(value) < 1e15 && value == std::trunc(value))
     return std::to_string(static_cast<long long>(value));
-  std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  std::array<char, 64> buffer{};
+  char* const last = buffer.data() + buffer.size();
+  const bool everyday = std::abs(value) > 1e-7 && std::abs(value) < 1e15;
+  const auto [end, error] = everyday ? std::to_chars(buffer.data(), last, value, std::chars_format::fixed)
+                                     : std::to_chars(buffer.data(), last, value);
   return {buffer.data(), end};
 }
 

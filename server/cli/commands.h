@@ -1,7 +1,9 @@
 // The subcommands of `cupola`: one file each, added to the command line by one line in main.cpp.
 #pragma once
 
-#include <CLI/App.hpp>
+namespace CLI {
+class App;
+}
 
 namespace cupola::cli {
 
@@ -13,5 +15,6 @@ inline constexpr ExitCode exit_done = 0, exit_no = 1, exit_unusable = 2;
 void add_validate(CLI::App& app, ExitCode& exit_code);
 void add_compare(CLI::App& app, ExitCode& exit_code);
 void add_schema(CLI::App& app, ExitCode& exit_code);
+void add_docs(CLI::App& app, ExitCode& exit_code);
 
 } // namespace cupola::cli

@@ -1,4 +1,5 @@
 // cupola compare: how far two pictures are apart.
+#include <CLI/App.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>

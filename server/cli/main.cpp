@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   add_validate(app, exit_code);
   add_compare(app, exit_code);
   add_schema(app, exit_code);
+  add_docs(app, exit_code);
 
   try {
     app.parse(argc, argv);

@@ -1,7 +1,11 @@
 #include "server/cli/report.h"
 
+#include <algorithm>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <vector>
 
 namespace cupola::cli {
 
@@ -34,6 +38,32 @@ std::string as_uri(const std::string& path) {
   }
   return out;
 }
+
+/// Lines of the files that problems stand in, read when first asked for.
+class Lines {
+public:
+  /// A column counted in characters (SARIF's unicodeCodePoints), as ours count bytes.
+  std::size_t column(const model::Position& at) {
+    const std::vector<std::string>& lines = of(at.file);
+    if (at.line > lines.size()) return at.column;
+    const std::string_view before = std::string_view(lines[at.line - 1]).substr(0, at.column - 1);
+    return 1 + static_cast<std::size_t>(std::count_if(before.begin(), before.end(),
+                                                      [](unsigned char c) { return (c & 0xC0u) != 0x80u; }));
+  }
+
+private:
+  const std::vector<std::string>& of(const std::string& file) {
+    const auto [entry, is_new] = files_.try_emplace(file);
+    if (is_new) {
+      std::ifstream stream(file, std::ios::binary);
+      for (std::string line; std::getline(stream, line);) entry->second.push_back(line);
+      if (!entry->second.empty() && entry->second.front().starts_with("\xEF\xBB\xBF"))
+        entry->second.front().erase(0, 3); // a byte order mark is no part of the line
+    }
+    return entry->second;
+  }
+  std::map<std::string, std::vector<std::string>> files_;
+};
 
 /// The text without its place and code, which SARIF has fields for.
 std::string sentence(Problem problem) {
@@ -80,12 +110,13 @@ std::string as_sarif(const model::Problems& problems) {
   std::map<std::string, std::size_t> index;
   Json rules = rules_of(problems, index);
   Json results = Json::array();
+  Lines lines;
   for (const Problem& problem : problems) {
     const std::string id(model::code_id(problem.code));
     Json location{{"physicalLocation", {{"artifactLocation", {{"uri", as_uri(problem.at.file)}}}}}};
     if (problem.at.line > 0)
       location["physicalLocation"]["region"] = {{"startLine", problem.at.line},
-                                                {"startColumn", problem.at.column}};
+                                                {"startColumn", lines.column(problem.at)}};
     if (!problem.pointer.empty())
       location["logicalLocations"] = Json::array({{{"fullyQualifiedName", problem.pointer}}});
     results.push_back({{"ruleId", id},
@@ -98,7 +129,7 @@ std::string as_sarif(const model::Problems& problems) {
   return dumped({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
                  {"version", "2.1.0"},
                  {"runs", Json::array({{{"tool", {{"driver", driver}}},
-                                        {"columnKind", "utf16CodeUnits"},
+                                        {"columnKind", "unicodeCodePoints"},
                                         {"results", std::move(results)}}})}});
 }
 

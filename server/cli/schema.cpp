@@ -1,4 +1,5 @@
 // cupola schema: the published JSON Schema of show files.
+#include <CLI/App.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 

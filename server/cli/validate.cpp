@@ -1,4 +1,5 @@
 // cupola validate: what the daemon would say about a show, without running it.
+#include <CLI/App.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
