@@ -5,40 +5,33 @@
 // y up, -z ahead. A ray is a direction, not normalised: its length carries the weight of the piecewise method
 // (a perspective's rays have -z = 1, a cylinder's have horizontal length 1, before off_axis).
 //
-// [Trapp & Döllner 2008, sec. 3]: V = C · δ(F·s) − O, with C the orientation and O the off-axis vector. The
-// paper's s scales the image coordinates; here zoom = 1/s, a magnification.
+// [Trapp & Döllner 2008, sec. 3]: V = C · (δ(F·s) − O), with C the orientation and O the off-axis vector,
+// here in the shape's own axes so that it turns with the picture. The paper's s scales the image coordinates;
+// here zoom = 1/s, a magnification.
 #pragma once
 
+#include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <optional>
 #include <variant>
 
 #include "configs/model/show.h"
+#include "renderer/projection/cylinder.h"
+#include "renderer/projection/equirectangular.h"
+#include "renderer/projection/fisheye.h"
+#include "renderer/projection/perspective.h"
 
 namespace cupola::projection {
 
-struct PerspectiveMap {
-  double tan_half_h, tan_half_v;
-};
-struct CylinderMap {
-  double half_h;     ///< radians, at most π
-  double tan_half_v; ///< of the vertical half angle
-};
-struct FisheyeMap {
-  double half_fov; ///< radians, at most π
-  double scale_s;  ///< image coordinates are multiplied by these; the circle is then the unit circle
-  double scale_t;
-};
-struct EquirectangularMap {
-  double half_h, half_v; ///< radians, at most π and π/2
-};
+using ShapeMap = std::variant<PerspectiveMap, CylinderMap, FisheyeMap, EquirectangularMap>;
 
 struct Map {
-  std::variant<PerspectiveMap, CylinderMap, FisheyeMap, EquirectangularMap> shape;
-  double zoom = 1.0;
-  glm::dvec3 off_axis{0.0};    ///< in the shape's own axes, |O| < 1
+  ShapeMap shape;
+  double zoom = 1.0;           ///< above 0
+  glm::dvec3 off_axis{0.0};    ///< in the shape's own axes; the eye, which must lie inside(): see there
   glm::dmat3 orientation{1.0}; ///< the shape's axes to view axes
 };
 
@@ -48,13 +41,39 @@ struct Map {
 /// Rotation from turned axes to the axes they are turned against: yaw, then pitch, then roll.
 [[nodiscard]] glm::dmat3 rotation(const model::Orientation& orientation);
 
-/// nullopt where the image point shows nothing (outside the fisheye's circle, beyond a full turn).
+/// Whether the off-axis vector leaves the eye inside the shape: before the plane, inside the cylinder or
+/// sphere of radius 1. Outside, image points lose their one-to-one relation to directions.
+[[nodiscard]] bool inside(const Map& map);
+
+/// nullopt where the image point shows nothing (outside the fisheye's circle, beyond a full turn), and for
+/// NaN.
 [[nodiscard]] std::optional<glm::dvec3> ray(const Map& map, glm::dvec2 st);
 
-/// The image point that shows a direction; it may lie outside [-1,1]². nullopt where no image point does.
+/// The image point that shows a direction; it may lie outside [-1,1]². nullopt where no image point does:
+/// then ray() has no such direction. Where several do (a pole, the seam behind a full turn), one of them.
 [[nodiscard]] std::optional<glm::dvec2> image_point(const Map& map, const glm::dvec3& direction);
 
-/// Pixels per radian at an image point, in the direction in which they are densest; 0 where nothing is shown.
+/// Pixels per radian at an image point, in the direction in which they are densest; 0 where nothing is shown,
+/// infinite at a pole of an equirectangular picture.
 [[nodiscard]] double pixel_density(const Map& map, glm::dvec2 st, glm::dvec2 size_px);
+
+/// Pixels per radian along the lines on which the shape counts its angles in equal steps: at the centre of a
+/// perspective, along the horizon of a cylinder, a radius of a fisheye, the equator of an equirectangular
+/// picture; the greater of both directions, and where the wall is farthest from an eye off its centre. This
+/// is the density that a cubemap is matched to: elsewhere (towards a pole, a rim, a tall picture's top)
+/// pixels crowd without limit, and hold no more detail for it.
+[[nodiscard]] double matched_density(const Map& map, glm::dvec2 size_px);
+
+/// A map as uniforms of map.glsl, which fixes their locations.
+struct MapUniforms {
+  static constexpr int location_shape = 16, location_parameters = 17, location_zoom = 18,
+                       location_off_axis = 19, location_orientation = 20;
+  std::int32_t shape = 0; ///< index in ShapeMap
+  glm::vec4 parameters{0.0f};
+  float zoom = 1.0f;
+  glm::vec3 off_axis{0.0f};
+  glm::mat3 orientation{1.0f}; ///< column by column, as GL reads it
+};
+[[nodiscard]] MapUniforms uniforms(const Map& map);
 
 } // namespace cupola::projection

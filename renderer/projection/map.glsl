@@ -1,0 +1,41 @@
+// twin of map.cpp. The uniforms hold projection::uniforms(map); their locations are MapUniforms's.
+#include "renderer/projection/perspective.glsl"
+#include "renderer/projection/cylinder.glsl"
+#include "renderer/projection/fisheye.glsl"
+#include "renderer/projection/equirectangular.glsl"
+
+layout(location = 16) uniform int map_shape; // order of Map::shape
+layout(location = 17) uniform vec4 map_parameters;
+layout(location = 18) uniform float map_zoom;
+layout(location = 19) uniform vec3 map_off_axis;
+layout(location = 20) uniform mat3 map_orientation; // the shape's axes to view axes
+
+bool shape_ray(vec2 st, out vec3 ray) {
+  if (map_shape == 0) return perspective_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 1) return cylinder_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 2) return fisheye_ray(map_parameters, st, map_zoom, ray);
+  return equirectangular_ray(map_parameters, st, map_zoom, ray);
+}
+
+bool shape_point(vec3 direction, out vec2 st) {
+  if (map_shape == 0) return perspective_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 1) return cylinder_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 2) return fisheye_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  return equirectangular_point(map_parameters, map_off_axis, direction, map_zoom, st);
+}
+
+// twin of map.cpp: ray. False where the image point shows nothing; direction is then (0, 0, -1).
+bool map_ray(vec2 st, out vec3 direction) {
+  vec3 ray;
+  bool shown = shape_ray(st, ray);
+  direction = shown ? map_orientation * (ray - map_off_axis) : vec3(0.0, 0.0, -1.0);
+  return shown;
+}
+
+// twin of map.cpp: image_point. False where no image point shows the direction; st is then the centre.
+bool map_point(vec3 direction, out vec2 st) {
+  st = vec2(0.0);
+  float longest = max(max(abs(direction.x), abs(direction.y)), abs(direction.z));
+  if (!(longest > 0.0) || isinf(longest)) return false;
+  return shape_point(transpose(map_orientation) * (direction / longest), st);
+}

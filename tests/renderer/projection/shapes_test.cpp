@@ -1,0 +1,212 @@
+// Hand-worked values of each shape.
+#include <cmath>
+#include <doctest/doctest.h>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "renderer/projection/map.h"
+
+using namespace cupola;
+using namespace cupola::projection;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double degree = pi / 180;
+
+Map map_of(const model::Shape& shape, double aspect, double pitch = 0.0, double zoom = 1.0,
+           glm::dvec3 off_axis = {}) {
+  model::Projection p;
+  p.shape = shape;
+  p.zoom = zoom;
+  p.off_axis = off_axis;
+  p.orientation.pitch.degrees = pitch;
+  return make_map(p, aspect);
+}
+
+void check_shows(const Map& map, glm::dvec2 st, glm::dvec3 direction) {
+  CAPTURE(st.x);
+  CAPTURE(st.y);
+  const auto found = ray(map, st);
+  REQUIRE(found);
+  CHECK(glm::length(glm::normalize(*found) - glm::normalize(direction)) < 1e-12);
+  const auto back = image_point(map, direction);
+  REQUIRE(back);
+  CHECK(glm::length(*back - st) < 1e-12);
+}
+
+} // namespace
+
+TEST_CASE("perspective: 90 degrees across reach 45 to each side, square pixels without a vertical field") {
+  const Map map = map_of(model::Perspective{{90}, {}}, 2.0);
+  check_shows(map, {0, 0}, {0, 0, -1});
+  check_shows(map, {1, 0}, {1, 0, -1});
+  check_shows(map, {0, 1}, {0, 0.5, -1});
+  check_shows(map, {-3, 4}, {-3, 2, -1}); // outside the picture the map goes on
+  CHECK(ray(map, {1, 1})->z == -1.0);     // the weight
+  CHECK_FALSE(image_point(map, {0, 0, 1}));
+  CHECK_FALSE(image_point(map, {1, 0, 0}));
+  check_shows(map_of(model::Perspective{{90}, model::Angle{90}}, 2.0), {0, 1}, {0, 1, -1});
+  check_shows(map_of(model::Perspective{{90}, {}}, 1.0, 0, 2.0), {1, 1}, {0.5, 0.5, -1}); // zoom 2: half
+}
+
+TEST_CASE("perspective: off-axis is an asymmetric frustum, whatever the heading") {
+  // A wall with left 59.2, right 49.15, up and down 26.28621031746032 degrees: at distance 1 the frustum
+  // reaches from -1.6775 to 1.1564 and to ±0.49397.
+  const double left = std::tan(59.2 * degree), right = std::tan(49.15 * degree);
+  CHECK(left == doctest::Approx(1.6775).epsilon(1e-4));
+  CHECK(right == doctest::Approx(1.1564).epsilon(1e-4));
+  model::Projection p;
+  p.shape =
+      model::Perspective{{2 * std::atan((left + right) / 2) / degree}, model::Angle{2 * 26.28621031746032}};
+  p.off_axis = {(left - right) / 2, 0, 0};
+  for (const double yaw : {0.0, 270.0}) {
+    p.orientation.yaw.degrees = yaw;
+    const Map map = make_map(p, 2772.0 / 1345);
+    const glm::dmat3 turn = rotation(p.orientation);
+    check_shows(map, {-1, 0}, turn * glm::dvec3(-left, 0, -1));
+    check_shows(map, {1, 0}, turn * glm::dvec3(right, 0, -1));
+    CHECK(std::abs((ray(map, {0, 1}))->y) == doctest::Approx(0.49397).epsilon(1e-4));
+    CHECK(std::abs((ray(map, {0, -1}))->y) == doctest::Approx(0.49397).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("cylinder: a full turn") {
+  const Map map = map_of(model::Cylinder{{360}, {90}}, 4.0 / 3);
+  check_shows(map, {0, 0}, {0, 0, -1});
+  check_shows(map, {0.5, 0}, {1, 0, 0});
+  check_shows(map, {-0.5, 0}, {-1, 0, 0});
+  check_shows(map, {0, 1}, {0, 1, -1});
+  check_shows(map, {-0.25, -1}, {-1, -std::sqrt(2.0), -1});
+  const auto seam = ray(map, {1, 0}), other = ray(map, {-1, 0});
+  REQUIRE(seam);
+  REQUIRE(other);
+  CHECK(glm::length(*seam - glm::dvec3(0, 0, 1)) < 1e-15);
+  CHECK(glm::length(*seam - *other) < 1e-15);
+  CHECK(std::abs(image_point(map, {0, 0, 1})->x) == 1.0);
+  CHECK_FALSE(ray(map, {1.001, 0}));
+  CHECK_FALSE(image_point(map, {0, 1, 0}));
+  CHECK_FALSE(image_point(map, {0, -1, 0}));
+  CHECK(std::hypot(ray(map, {0.3, 0.9})->x, ray(map, {0.3, 0.9})->z) == doctest::Approx(1.0)); // the weight
+}
+
+TEST_CASE("cylinder: zoom below 1 shows more, to a full turn and no further") {
+  const Map map = map_of(model::Cylinder{{180}, {90}}, 1.0, 0.0, 0.25);
+  check_shows(map, {0.25, 0.25}, {1, 1, 0});
+  CHECK(ray(map, {0.5, 0}));
+  CHECK_FALSE(ray(map, {0.501, 0}));
+  CHECK(ray(map, {0, 1})->y == doctest::Approx(4.0)); // vertically: four times the tangent
+}
+
+TEST_CASE("cylinder: off-axis, the wall seen from elsewhere") {
+  const Map map = map_of(model::Cylinder{{360}, {90}}, 1.0, 0.0, 1.0, {0.5, 0.25, 0});
+  check_shows(map, {0.5, 0}, {0.5, -0.25, 0});   // the wall at +x is 0.5 away, the horizon 0.25 lower
+  check_shows(map, {-0.5, 0}, {-1.5, -0.25, 0}); // at -x 1.5
+  check_shows(map, {0, 1}, {-0.5, 0.75, -1});
+}
+
+TEST_CASE("fisheye: dome with the zenith in the centre, front at the bottom, right at the right") {
+  const Map map = map_of(model::Fisheye{{180}}, 1600.0 / 1200, 90.0);
+  check_shows(map, {0, 0}, {0, 1, 0});
+  check_shows(map, {0, -1}, {0, 0, -1}); // north at the bottom
+  check_shows(map, {0, 1}, {0, 0, 1});
+  check_shows(map, {0.75, 0}, {1, 0, 0}); // the circle is 1200 of 1600 pixels wide
+  check_shows(map, {-0.75, 0}, {-1, 0, 0});
+  check_shows(map, {0, -0.5}, {0, 1, -1});
+  CHECK_FALSE(ray(map, {0.7501, 0}));
+  CHECK_FALSE(ray(map, {0.75, 0.75}));
+  CHECK_FALSE(image_point(map, {0, -1, 0}));
+}
+
+TEST_CASE("fisheye: a tall viewport has the circle across its width") {
+  const Map map = map_of(model::Fisheye{{180}}, 0.5);
+  check_shows(map, {1, 0}, {1, 0, 0});
+  check_shows(map, {0, 0.5}, {0, 1, 0});
+  CHECK_FALSE(ray(map, {0, 0.501}));
+}
+
+TEST_CASE("fisheye: tilted back by 27 degrees from the zenith, the zenith stands at 27/90 of the radius") {
+  check_shows(map_of(model::Fisheye{{180}}, 1.0, 90 - 27), {0, 0.30}, {0, 1, 0});
+  check_shows(map_of(model::Fisheye{{180}}, 1.0, 0), {0, 1}, {0, 1, 0}); // level: on the rim
+}
+
+TEST_CASE("fisheye: a full sphere ends behind") {
+  const Map map = map_of(model::Fisheye{{360}}, 1.0);
+  check_shows(map, {0.5, 0}, {1, 0, 0});
+  check_shows(map, {0, -0.75}, {0, -1, 1});
+  for (const double a : {0.0, 1.0, 4.0}) {
+    const auto behind = ray(map, {std::cos(a), std::sin(a)});
+    REQUIRE(behind);
+    CHECK(glm::length(*behind - glm::dvec3(0, 0, 1)) < 1e-12);
+  }
+  const auto st = image_point(map, {0, 0, 1});
+  REQUIRE(st);
+  CHECK(glm::length(*st) == doctest::Approx(1.0));
+}
+
+TEST_CASE("fisheye: the circle stays inscribed under zoom, the angle at its rim changes") {
+  check_shows(map_of(model::Fisheye{{180}}, 1.0, 0, 2.0), {1, 0}, {1, 0, -1}); // 45 degrees at the rim
+  CHECK_FALSE(ray(map_of(model::Fisheye{{180}}, 1.0, 0, 2.0), {1.001, 0}));
+  const Map wide = map_of(model::Fisheye{{180}}, 1.0, 0, 0.25); // half a turn is reached at half the radius
+  check_shows(wide, {0.25, 0}, {1, 0, 0});
+  CHECK(ray(wide, {0.499, 0}));
+  CHECK_FALSE(ray(wide, {0.501, 0}));
+}
+
+TEST_CASE("fisheye: off-axis, the dome seen from elsewhere") {
+  const Map map = map_of(model::Fisheye{{180}}, 1.0, 0, 1.0, {0.8, 0, 0});
+  check_shows(map, {1, 0}, {0.2, 0, 0});
+  check_shows(map, {-1, 0}, {-1.8, 0, 0});
+  check_shows(map, {0, 0}, {-0.8, 0, -1});
+  CHECK_FALSE(image_point(map, {0, 0, 1})); // that wall lies beyond the circle
+}
+
+TEST_CASE("equirectangular: longitude across, latitude upwards") {
+  const Map map = map_of(model::Equirectangular{{360}, {180}}, 2.0);
+  check_shows(map, {0, 0}, {0, 0, -1});
+  check_shows(map, {0.5, 0}, {1, 0, 0});
+  check_shows(map, {0, 0.5}, {0, 1, -1});
+  check_shows(map, {-0.25, -0.5}, {-1, -std::sqrt(2.0), -1});
+  check_shows(map, {0, 1}, {0, 1, 0}); // of a pole, the middle
+  CHECK(glm::length(*ray(map, {0.77, 1}) - glm::dvec3(0, 1, 0)) < 1e-15);
+  CHECK_FALSE(ray(map, {0, 1.001}));
+  CHECK_FALSE(ray(map, {-1.001, 0}));
+  CHECK(std::abs(image_point(map, {0, 0, 1})->x) == 1.0);
+  check_shows(map_of(model::Equirectangular{{90}, {60}}, 2.0), {1, 0}, {1, 0, -1});
+}
+
+TEST_CASE("pixel density: hand-worked values") {
+  const glm::dvec2 size(1600, 1200);
+  const double aspect = 4.0 / 3;
+  const auto density = [&](const Map& map, glm::dvec2 st) { return pixel_density(map, st, size); };
+  const auto near = [](double value) { return doctest::Approx(value).epsilon(1e-5); };
+  const Map flat = map_of(model::Perspective{{90}, {}}, aspect);
+  CHECK(density(flat, {0, 0}) == near(800));
+  CHECK(density(flat, {1, 0}) == near(1600)); // 1 / cos² across
+  const Map wall = map_of(model::Cylinder{{360}, {90}}, aspect);
+  CHECK(density(wall, {0, 0}) == near(600));       // upwards; across only 1600 / 2π
+  CHECK(density(wall, {0.7, 1}) == near(600 * 2)); // 1 / cos² 45°
+  CHECK(density(wall, {-1, 0}) == near(600));      // one-sided at the seam
+  const Map dome = map_of(model::Fisheye{{180}}, aspect, 90);
+  CHECK(density(dome, {0, 0}) == near(600 / (pi / 2)));
+  CHECK(density(dome, {0, -1}) == near(600)); // along the rim: 2π · 600 pixels for 2π
+  CHECK(density(dome, {1, 0}) == 0.0);        // outside the circle
+  const Map globe = map_of(model::Equirectangular{{360}, {180}}, 2.0);
+  CHECK(pixel_density(globe, {0, 0}, {2000, 1000}) == near(1000 / pi));
+  CHECK(pixel_density(globe, {0, 2.0 / 3}, {2000, 1000}) == near(2 * 1000 / pi)); // at 60° parallels are half
+  CHECK(pixel_density(globe, {0, 1}, {2000, 1000}) > 1e6);                        // a pole
+  CHECK(density(map_of(model::Perspective{{90}, {}}, aspect, 0, 3.0), {0, 0}) == near(2400)); // zoom
+}
+
+TEST_CASE("matched density: along the lines of equal steps") {
+  const auto near = [](double value) { return doctest::Approx(value).epsilon(1e-12); };
+  const double tan67 = std::tan(67 * degree);
+  CHECK(matched_density(map_of(model::Cylinder{{360}, {134}}, 4.0 / 3), {1600, 1200}) == near(600 / tan67));
+  CHECK(matched_density(map_of(model::Fisheye{{180}}, 1.0), {2048, 2048}) == near(1024 / (pi / 2)));
+  CHECK(matched_density(map_of(model::Fisheye{{180}}, 4.0 / 3, 90), {1600, 1200}) == near(600 / (pi / 2)));
+  CHECK(matched_density(map_of(model::Perspective{{90}, {}}, 2.0), {1000, 500}) == near(500));
+  CHECK(matched_density(map_of(model::Equirectangular{{360}, {180}}, 2.0), {2000, 1000}) == near(1000 / pi));
+  // Zoom, and an eye that sees the far wall 1.6 away.
+  CHECK(matched_density(map_of(model::Fisheye{{180}}, 1.0, 0, 2.0, {0, 0, 0.6}), {2048, 2048}) ==
+        near(1024 / (pi / 2) * 2 * 1.6));
+}
