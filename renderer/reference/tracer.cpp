@@ -1,0 +1,302 @@
+#include "renderer/reference/tracer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <embree3/rtcore.h>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "renderer/content/lighting.h"
+#include "renderer/reference/surface.h"
+
+namespace cupola::reference {
+namespace {
+
+constexpr int tile = 16;               ///< pixels along an edge
+constexpr std::size_t max_layers = 64; ///< of blended surfaces behind each other
+constexpr float opaque_enough = 1e-4f;
+
+struct DeviceDeleter {
+  void operator()(RTCDeviceTy* device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+  void operator()(RTCSceneTy* scene) const { rtcReleaseScene(scene); }
+};
+
+/// Triangles as last seen from the eye: neighbouring samples mostly meet the same ones.
+class SeenTriangles {
+public:
+  const SeenTriangle& get(const World& world, std::uint32_t triangle, const glm::dvec3& eye) {
+    SeenTriangle& seen = slots_[triangle % slots_.size()];
+    if (seen.triangle != triangle) seen = see_triangle(world, triangle, eye);
+    return seen;
+  }
+
+private:
+  std::array<SeenTriangle, 64> slots_{};
+};
+
+/// One ray on its way; Embree hands it to the filter. The context must stand first.
+struct Shot {
+  RTCIntersectContext context;
+  const World* world;
+  const Shading* shading;
+  const Ray* ray;
+  SeenTriangles* seen;
+  std::array<std::uint32_t, max_layers> passed; ///< blended triangles already met
+  std::size_t passed_count;
+};
+
+/// Whether a surface that the ray would meet lets it through: seen from its culled back, cut out, or met
+/// before.
+bool is_passed(Shot& shot, std::uint32_t triangle) {
+  const auto* end = shot.passed.data() + shot.passed_count;
+  if (std::find(static_cast<const std::uint32_t*>(shot.passed.data()), end, triangle) != end) return true;
+  const content::Material& material = shot.world->material(triangle);
+  const bool mask = material.alpha_mode == content::AlphaMode::mask;
+  if (material.double_sided && !mask) return false;
+  const SeenTriangle& seen = shot.seen->get(*shot.world, triangle, shot.shading->eye);
+  const Crossing crossing = cross_triangle(seen, *shot.ray);
+  if (!material.double_sided && !crossing.front) return true;
+  return mask && base_alpha(*shot.world, *shot.shading, seen, crossing) < material.alpha_cutoff;
+}
+
+void filter(const RTCFilterFunctionNArguments* arguments) {
+  auto* shot = reinterpret_cast<Shot*>(arguments->context);
+  const unsigned triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
+  if (arguments->valid[0] == -1 && is_passed(*shot, triangle)) arguments->valid[0] = 0;
+}
+
+RTCRay embree_ray(const glm::dvec3& eye, const Ray& ray, double near) {
+  RTCRay out{};
+  out.org_x = static_cast<float>(eye.x);
+  out.org_y = static_cast<float>(eye.y);
+  out.org_z = static_cast<float>(eye.z);
+  out.dir_x = static_cast<float>(ray.direction.x);
+  out.dir_y = static_cast<float>(ray.direction.y);
+  out.dir_z = static_cast<float>(ray.direction.z);
+  out.tnear = static_cast<float>(near);
+  out.tfar = std::numeric_limits<float>::infinity();
+  out.mask = ~0u;
+  return out;
+}
+
+/// A viewport's pixels and their rays.
+class Camera {
+public:
+  explicit Camera(const Request& request)
+      : request_(request) {}
+
+  /// Ray through a place of the viewport in pixels, y downwards; world axes.
+  [[nodiscard]] std::optional<glm::dvec3> ray(glm::dvec2 place) const {
+    const glm::dvec2 st(2.0 * place.x / request_.rect.width - 1.0,
+                        1.0 - 2.0 * place.y / request_.rect.height);
+    const auto view = projection::ray(request_.map, st);
+    if (!view) return std::nullopt;
+    return request_.orientation * *view;
+  }
+
+  /// Change of the ray per pixel along `step`, over one pixel around `place`; from one side alone at a border
+  /// of what the projection shows.
+  [[nodiscard]] glm::dvec3 change(glm::dvec2 place, glm::dvec2 step) const {
+    const auto before = ray(place - 0.5 * step), after = ray(place + 0.5 * step);
+    if (before && after) return *after - *before;
+    const auto here = ray(place);
+    if (here && after) return 2.0 * (*after - *here);
+    if (here && before) return 2.0 * (*here - *before);
+    return glm::dvec3(0.0);
+  }
+
+private:
+  const Request& request_;
+};
+
+} // namespace
+
+struct Tracer::Impl {
+  World world;
+  std::unique_ptr<RTCDeviceTy, DeviceDeleter> device;
+  std::unique_ptr<RTCSceneTy, SceneDeleter> scene;
+
+  void build();
+  [[nodiscard]] glm::vec4 trace(const Request& request, const Shading& shading, const Ray& ray,
+                                glm::vec2 pixel, SeenTriangles& seen) const;
+  [[nodiscard]] glm::vec4 pixel(const Request& request, const Camera& camera, const Shading& shading,
+                                SeenTriangles& seen, int x, int y, const glm::vec4& beneath,
+                                int picture_height) const;
+};
+
+void Tracer::Impl::build() {
+  RTCScene fresh = rtcNewScene(device.get());
+  scene.reset(fresh);
+  rtcSetSceneFlags(
+      fresh, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  const auto& indices = world.scene->geometry.indices;
+  const auto& vertices = world.vertices();
+  if (!indices.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* corner = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
+    for (const content::Vertex& vertex : vertices)
+      for (int i = 0; i < 3; ++i) *corner++ = vertex.position[i];
+    void* index = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                          3 * sizeof(unsigned), indices.size() / 3);
+    std::copy(indices.begin(), indices.end(), static_cast<std::uint32_t*>(index));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(fresh, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(fresh);
+}
+
+/// Colour and opacity of what the ray meets, nearest first; colours are multiplied by opacity already.
+glm::vec4 Tracer::Impl::trace(const Request& request, const Shading& shading, const Ray& ray, glm::vec2 place,
+                              SeenTriangles& seen) const {
+  Shot shot;
+  rtcInitIntersectContext(&shot.context);
+  shot.context.filter = filter;
+  shot.world = &world;
+  shot.shading = &shading;
+  shot.ray = &ray;
+  shot.seen = &seen;
+  shot.passed_count = 0;
+
+  glm::vec3 color(0.0f);
+  float through = 1.0f;
+  RTCRayHit hit{};
+  hit.ray = embree_ray(request.eye, ray, request.near);
+  while (true) {
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene.get(), &shot.context, &hit);
+    if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
+    const SeenTriangle& triangle = seen.get(world, hit.hit.primID, request.eye);
+    const glm::vec4 met = surface_color(world, shading, triangle, cross_triangle(triangle, ray), place);
+    color += through * met.a * glm::vec3(met);
+    through *= 1.0f - met.a;
+    if (through < opaque_enough || shot.passed_count == max_layers) break;
+    shot.passed[shot.passed_count++] = hit.hit.primID;
+    hit.ray.tnear = hit.ray.tfar; // the same place again, for surfaces that lie in one plane
+    hit.ray.tfar = std::numeric_limits<float>::infinity();
+  }
+  return {color, 1.0f - through};
+}
+
+glm::vec4 Tracer::Impl::pixel(const Request& request, const Camera& camera, const Shading& shading,
+                              SeenTriangles& seen, int x, int y, const glm::vec4& beneath,
+                              int picture_height) const {
+  const glm::dvec2 corner(x, y);
+  const glm::dvec2 center = corner + 0.5;
+  const glm::dvec2 right(1.0, 0.0), up(0.0, -1.0);
+  Ray ray{};
+  const bool smooth = camera.ray(center).has_value();
+  if (smooth) {
+    ray.per_x = camera.change(center, right);
+    ray.per_y = camera.change(center, up);
+  }
+  const glm::vec3 background(request.background);
+  glm::dvec4 sum(0.0);
+  for (int i = 0; i < request.samples; ++i) {
+    const glm::dvec2 place = corner + sample_position(i, request.samples);
+    const auto direction = camera.ray(place);
+    if (!direction) {
+      sum += glm::dvec4(beneath);
+      continue;
+    }
+    ray.direction = *direction;
+    if (!smooth) {
+      ray.per_x = camera.change(place, right);
+      ray.per_y = camera.change(place, up);
+    }
+    const glm::vec2 in_picture(request.rect.x + place.x, picture_height - (request.rect.y + place.y));
+    const glm::vec4 met = trace(request, shading, ray, in_picture, seen);
+    sum += glm::dvec4(glm::vec3(met) + (1.0f - met.a) * background, met.a);
+  }
+  return glm::vec4(sum / static_cast<double>(request.samples));
+}
+
+Tracer::Tracer(std::shared_ptr<const content::Scene> scene, const content::Pose* pose)
+    : impl_(std::make_unique<Impl>()) {
+  World& world = impl_->world;
+  world.scene = std::move(scene);
+  world.images.resize(world.scene->images.size());
+  tbb::parallel_for(std::size_t{0}, world.images.size(), [&world](std::size_t i) {
+    world.images[i] = content::make_mipmaps(world.scene->images[i]);
+  });
+  world.material_of_triangle.resize(world.scene->geometry.indices.size() / 3);
+  for (const content::Cluster& cluster : world.scene->geometry.clusters)
+    std::fill_n(world.material_of_triangle.begin() + cluster.first_index / 3, cluster.index_count / 3,
+                cluster.material);
+  impl_->device.reset(rtcNewDevice(nullptr));
+  if (pose)
+    move(*pose);
+  else
+    impl_->build();
+}
+
+Tracer::~Tracer() = default;
+
+void Tracer::move(const content::Pose& pose) {
+  World& world = impl_->world;
+  const auto& still = world.scene->geometry.vertices;
+  world.moved.assign(still.begin(), still.begin() + world.scene->static_vertices);
+  world.moved.insert(world.moved.end(), pose.vertices.begin(), pose.vertices.end());
+  world.moved_lights = pose.lights;
+  world.posed = true;
+  impl_->build();
+}
+
+bool Tracer::render(const Request& request, Picture& picture) const {
+  const Camera camera(request);
+  Shading shading;
+  shading.lighting = content::lighting_of(request.scene);
+  shading.style = request.scene.style;
+  shading.eye = request.eye;
+  shading.sample_width =
+      static_cast<float>(1.0 / std::sqrt(static_cast<double>(std::max(request.samples, 1))));
+
+  const int across = (request.rect.width + tile - 1) / tile, down = (request.rect.height + tile - 1) / tile;
+  std::mutex reporting;
+  int done = 0;
+  bool complete = true;
+  const auto draw = [&](int number) {
+    if (request.cancel && request.cancel->load(std::memory_order_relaxed)) {
+      const std::lock_guard lock(reporting);
+      complete = false;
+      return;
+    }
+    SeenTriangles seen;
+    const int left = number % across * tile, top = number / across * tile;
+    for (int y = top; y < std::min(top + tile, request.rect.height); ++y)
+      for (int x = left; x < std::min(left + tile, request.rect.width); ++x) {
+        const int column = request.rect.x + x, row = request.rect.y + y;
+        if (column < 0 || row < 0 || column >= picture.width || row >= picture.height) continue;
+        glm::vec4& target = picture.at(column, row);
+        target = impl_->pixel(request, camera, shading, seen, x, y, target, picture.height);
+      }
+    const std::lock_guard lock(reporting);
+    ++done;
+    if (request.progress) request.progress(static_cast<double>(done) / (across * down));
+  };
+  const auto most =
+      static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  tbb::task_arena arena(request.threads > 0 ? std::min(request.threads, most) : tbb::task_arena::automatic);
+  arena.execute([&] { tbb::parallel_for(0, across * down, draw); });
+  return complete;
+}
+
+glm::dvec2 sample_position(int index, int count) {
+  double reversed = 0.0, digit = 0.5; // the index's binary digits, mirrored at the point
+  for (unsigned rest = static_cast<unsigned>(index); rest != 0; rest >>= 1, digit *= 0.5)
+    if (rest & 1u) reversed += digit;
+  const double half = 0.5 / count;
+  const double y = reversed + half;
+  return {(index + 0.5) / count, y < 1.0 ? y : y - 1.0};
+}
+
+} // namespace cupola::reference
