@@ -110,6 +110,7 @@ struct Loop::Impl {
     started = monotonic();
     pacer.restart(started);
     while (!stopping) {
+      snapshots.accept();
       take_stage();
       if (running.empty() && !next) {
         if (!opening && !waiting) return LoopEnd::failed; // the first outputs could not be opened

@@ -58,22 +58,23 @@ void Snapshots::request(std::string output, std::optional<int> max_width, Snapsh
   if (refused) callback(model::failure(std::move(*refused)));
 }
 
-void Snapshots::serve(const std::vector<Picture>& pictures, std::uint64_t revision, std::uint64_t frame) {
-  collect();
-  std::vector<Request> requests;
-  {
-    const std::lock_guard lock(mutex_);
-    requests.swap(requests_);
-  }
-  if (!requests.empty()) begin(std::move(requests), pictures, revision, frame);
+void Snapshots::accept() {
+  const std::lock_guard lock(mutex_);
+  accepted_.insert(accepted_.end(), std::make_move_iterator(requests_.begin()),
+                   std::make_move_iterator(requests_.end()));
+  requests_.clear();
 }
 
-void Snapshots::begin(std::vector<Request> requests, const std::vector<Picture>& pictures,
-                      std::uint64_t revision, std::uint64_t frame) {
+void Snapshots::serve(const std::vector<Picture>& pictures, std::uint64_t revision, std::uint64_t frame) {
+  collect();
+  if (!accepted_.empty()) begin(pictures, revision, frame);
+}
+
+void Snapshots::begin(const std::vector<Picture>& pictures, std::uint64_t revision, std::uint64_t frame) {
   if (!readback_) readback_ = std::make_unique<outputs::Readback>(buffers);
   std::vector<Request> later;
   std::vector<Read> reads;
-  for (Request& request : requests) {
+  for (Request& request : accepted_) {
     const auto same = std::find_if(reads.begin(), reads.end(), [&](const Read& read) {
       return read.output == request.output && read.max_width == request.max_width;
     });
@@ -98,10 +99,7 @@ void Snapshots::begin(std::vector<Request> requests, const std::vector<Picture>&
     read.callbacks.push_back(std::move(request.callback));
   }
   for (Read& read : reads) under_way_.push_back(std::move(read));
-  if (later.empty()) return;
-  const std::lock_guard lock(mutex_);
-  requests_.insert(requests_.begin(), std::make_move_iterator(later.begin()),
-                   std::make_move_iterator(later.end()));
+  accepted_ = std::move(later);
 }
 
 bool Snapshots::collect() {
@@ -124,6 +122,8 @@ void Snapshots::end() {
     ended_ = true;
     for (Request& request : requests_) unanswered.push_back(std::move(request.callback));
     requests_.clear();
+    for (Request& request : accepted_) unanswered.push_back(std::move(request.callback));
+    accepted_.clear();
     // Pictures that are there already are delivered; their buffers must be let go before they are deleted.
     wake_.wait(lock, [this] { return deliveries_.empty() && !delivering_; });
   }

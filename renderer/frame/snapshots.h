@@ -28,7 +28,11 @@ public:
   /// Any thread.
   void request(std::string output, std::optional<int> max_width, SnapshotCallback callback);
 
-  /// Render thread, after a frame: starts what was asked for and hands over what is finished.
+  /// Render thread, before a frame begins: what is asked for until now gets a picture of that frame or of a
+  /// later one, never of an earlier one.
+  void accept();
+
+  /// Render thread, after a frame: starts what was accepted and hands over what is finished.
   void serve(const std::vector<Picture>& pictures, std::uint64_t revision, std::uint64_t frame);
 
   /// Render thread: hands over what is finished; true while more is under way.
@@ -54,8 +58,7 @@ private:
     Read read;
     outputs::Pixels pixels;
   };
-  void begin(std::vector<Request> requests, const std::vector<Picture>& pictures, std::uint64_t revision,
-             std::uint64_t frame);
+  void begin(const std::vector<Picture>& pictures, std::uint64_t revision, std::uint64_t frame);
   void deliver();
 
   std::mutex mutex_; ///< held to push, swap and pop, never while reading back or converting
@@ -65,6 +68,7 @@ private:
   bool ended_ = false, closing_ = false, delivering_ = false;
 
   std::unique_ptr<outputs::Readback> readback_; ///< render thread
+  std::vector<Request> accepted_;               ///< render thread
   std::deque<Read> under_way_;                  ///< render thread, in the order of readback_
   std::thread thread_;
 };

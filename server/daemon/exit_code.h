@@ -1,0 +1,14 @@
+// How cupolad ends. docs/recipes and the service rely on these.
+#pragma once
+
+namespace cupola::daemon {
+
+enum ExitCode : int {
+  exit_done = 0,         ///< ended as asked; --check: the show is valid
+  exit_show = 1,         ///< the show has problems; they were printed
+  exit_usage = 2,        ///< wrong arguments, or the show file cannot be read
+  exit_start = 3,        ///< an output, OpenGL or a listener could not be opened
+  exit_context_lost = 4, ///< the driver has reset the GPU: start again
+};
+
+} // namespace cupola::daemon

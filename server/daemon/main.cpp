@@ -1,0 +1,170 @@
+// cupolad: the render server. This file is its object graph; docs/ARCHITECTURE.md draws the threads.
+#include <pthread.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <future>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "renderer/frame/loop.h"
+#include "renderer/outputs/context.h"
+#include "renderer/outputs/main_thread.h"
+#include "renderer/outputs/open.h"
+#include "server/daemon/exit_code.h"
+#include "server/daemon/faults.h"
+#include "server/daemon/log.h"
+#include "server/daemon/service.h"
+#include "server/daemon/show_file.h"
+#include "server/daemon/signals.h"
+#include "server/daemon/stages.h"
+#include "server/daemon/status.h"
+#include "server/daemon/supervisor.h"
+#include "server/state/live_state.h"
+
+namespace cupola::daemon {
+
+namespace {
+
+/// A stop takes at most so long from the signal; what is not done by then is left undone.
+constexpr int stop_within_ms = 800;
+
+struct Options {
+  std::string config;
+  bool check = false;
+  std::string log_format = "text";
+  std::string log_level = "info";
+};
+
+using Live = std::unique_ptr<state::LiveState>;
+
+/// The first load runs on a thread of its own, so that a signal ends even a long one. Nullopt: asked to stop.
+std::optional<model::Result<Live>> load_unless_stopped(const Options& options, Signals& signals) {
+  std::packaged_task<model::Result<Live>()> task([&options] {
+    pthread_setname_np(pthread_self(), "prepare");
+    state::Options wanted;
+    wanted.load_resources = scene_loader(options.config);
+    return open_show(options.config, std::move(wanted));
+  });
+  auto loaded = task.get_future();
+  std::thread thread(std::move(task));
+  while (loaded.wait_for(std::chrono::milliseconds(10)) != std::future_status::ready)
+    if (const auto signal = signals.take(); signal && *signal != SIGHUP) {
+      thread.detach();
+      return std::nullopt;
+    }
+  thread.join();
+  return loaded.get();
+}
+
+/// With windows where the show wants some and there is a display; else headless.
+model::Result<std::unique_ptr<outputs::Context>> open_context(const model::Show& show,
+                                                              outputs::MainThread& main) {
+  if (outputs::wants_windows(show.outputs)) {
+    auto windowed = outputs::Context::make_windowed(main, messages_to_log());
+    if (windowed || outputs::needs_windows(show.outputs)) return windowed;
+    spdlog::info("no windows ({}); the outputs are headless", model::to_text(windowed.error().front()));
+  }
+  return outputs::Context::make_headless(messages_to_log());
+}
+
+frame::LoopHooks hooks_of(state::LiveState& live, Stages& stages, Faults& faults, Supervisor& supervisor) {
+  frame::LoopHooks hooks;
+  hooks.stage = [&] { return stages.newest(); };
+  hooks.shown = [&](std::uint64_t revision, std::uint64_t frame) {
+    live.shown(revision, frame);
+    faults.shown(revision);
+    supervisor.shown();
+  };
+  hooks.failed = [&](std::uint64_t revision, const model::Problems& problems) {
+    spdlog::error("revision {} cannot be shown; what was shown before goes on", revision);
+    log_problems(problems);
+    faults.add_failed(revision, problems);
+    supervisor.failed(revision);
+  };
+  hooks.problems = [&](const model::Problems& problems) {
+    log_problems(problems);
+    faults.add(problems);
+  };
+  hooks.ended = [&] { supervisor.ended(); };
+  return hooks;
+}
+
+ExitCode run(const Options& options) {
+  Signals signals;
+  outputs::MainThread main;
+  spdlog::info("cupolad {} with {}", CUPOLA_VERSION, options.config);
+
+  auto loaded = load_unless_stopped(options, signals);
+  if (!loaded) { // the loading thread still runs: nothing may be torn down under it
+    service::stopping();
+    std::_Exit(exit_done);
+  }
+  if (!*loaded) {
+    log_problems(loaded->error());
+    return exit_code_of(loaded->error());
+  }
+  const Live live = std::move(**loaded);
+  log_problems(live->current()->warnings);
+
+  auto context = open_context(*live->current()->show, main);
+  if (!context) {
+    log_problems(context.error());
+    return exit_start;
+  }
+  spdlog::info("rendering with {}", (*context)->describe());
+
+  Stages stages(*live);
+  Faults faults;
+  Supervisor supervisor(options.config, *live, main, signals);
+  ExitCode exit_code = exit_done;
+  {
+    frame::Loop loop(**context, main, hooks_of(*live, stages, faults, supervisor));
+    exit_code = supervisor.serve(loop, (*context)->desktop());
+    service::stopping();
+    Signals::end_within(stop_within_ms, exit_code);
+  }
+  main.close(); // nobody waits for this thread any more
+  return exit_code;
+}
+
+} // namespace
+
+} // namespace cupola::daemon
+
+int main(int argc, char** argv) {
+  using namespace cupola::daemon;
+  Options options;
+  CLI::App app("The render server of Cupola: shows for domes and cylinder walls.\n"
+               "SIGHUP reloads the show file; SIGTERM and SIGINT end.",
+               "cupolad");
+  app.set_version_flag("--version", "cupolad " CUPOLA_VERSION);
+  app.add_option("--config", options.config, "Show file")->required()->type_name("FILE");
+  app.add_flag("--check", options.check,
+               "Checks the show and opens nothing: 0 valid, 1 problems, 2 unreadable");
+  app.add_option("--log-format", options.log_format, "How log lines look")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  app.add_option("--log-level", options.log_level, "What is logged")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  app.footer(
+      "Exit codes: 0 ended as asked · 1 the show has problems · 2 wrong arguments or unreadable file ·\n"
+      "3 an output, OpenGL or a listener could not be opened · 4 the driver has reset the GPU");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // --help and --version arrive here too, with code 0.
+    return app.exit(error) == 0 ? exit_done : exit_usage;
+  }
+  if (options.check) return check(options.config);
+  set_up_log(options.log_format == "json", options.log_level);
+  return run(options);
+}
