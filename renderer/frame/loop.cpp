@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -62,7 +63,8 @@ struct Loop::Impl {
 
   std::atomic<bool> stopping = false;
   std::atomic<int> end{-1}; ///< a LoopEnd, or -1 while running
-  std::atomic<std::shared_ptr<const LoopStatus>> status{std::make_shared<const LoopStatus>()};
+  std::mutex status_mutex;  ///< held to copy or swap the pointer, for nothing else
+  std::shared_ptr<const LoopStatus> status = std::make_shared<const LoopStatus>();
   Snapshots snapshots;
 
   // Render thread only.
@@ -257,7 +259,9 @@ struct Loop::Impl {
       fresh->outputs.push_back({name, entry.output->describe(), entry.wanted.width, entry.wanted.height,
                                 counters.presented, counters.dropped});
     }
-    status = std::move(fresh);
+    std::shared_ptr<const LoopStatus> now_current = std::move(fresh);
+    const std::lock_guard lock(status_mutex);
+    status.swap(now_current); // the old one goes after the lock
   }
 
   /// With the context still current: everything that owns GL objects goes.
@@ -295,7 +299,11 @@ std::optional<LoopEnd> Loop::end() const {
 }
 
 LoopStatus Loop::status() const {
-  const std::shared_ptr<const LoopStatus> now = impl_->status;
+  std::shared_ptr<const LoopStatus> now;
+  {
+    const std::lock_guard lock(impl_->status_mutex);
+    now = impl_->status;
+  }
   return *now;
 }
 

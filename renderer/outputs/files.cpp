@@ -163,20 +163,37 @@ private:
 
 } // namespace
 
+namespace {
+
+model::Problem unwritable(const FilesOptions& options, const std::string& why) {
+  return {model::Code::image_unwritable, "/outputs/" + options.name + "/directory",
+          "a folder that pictures can be written to", options.directory.string() + " (" + why + ')', ""};
+}
+
+/// "" or why no file can be made in the folder.
+std::string why_not(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return error ? error.message() : "not a folder";
+  return access(folder.c_str(), W_OK | X_OK) == 0 ? "" : std::generic_category().message(errno);
+}
+
+} // namespace
+
+model::Problems test_files(const FilesOptions& options) {
+  // The nearest folder that is there decides whether the rest can be made.
+  std::error_code error;
+  std::filesystem::path nearest = std::filesystem::absolute(options.directory, error);
+  while (!std::filesystem::exists(nearest, error) && nearest.has_relative_path())
+    nearest = nearest.parent_path();
+  const std::string why = why_not(nearest);
+  return why.empty() ? model::Problems{} : model::Problems{unwritable(options, why)};
+}
+
 model::Result<std::unique_ptr<Output>> open_files(const FilesOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.directory, error);
-  std::string found;
-  if (error)
-    found = error.message();
-  else if (!std::filesystem::is_directory(options.directory, error))
-    found = "not a folder";
-  else if (access(options.directory.c_str(), W_OK | X_OK) != 0)
-    found = std::generic_category().message(errno);
-  if (!found.empty())
-    return model::failure({model::Code::image_unwritable, "/outputs/" + options.name + "/directory",
-                           "a folder that pictures can be written to",
-                           options.directory.string() + " (" + found + ')', ""});
+  const std::string why = error ? error.message() : why_not(options.directory);
+  if (!why.empty()) return model::failure(unwritable(options, why));
   return std::make_unique<Files>(options);
 }
 

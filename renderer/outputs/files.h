@@ -17,6 +17,9 @@ struct FilesOptions {
   int limit = 0;              ///< stops after so many pictures; 0: never
 };
 
+/// Any thread. What would keep open_files() from succeeding, without making anything.
+[[nodiscard]] model::Problems test_files(const FilesOptions& options);
+
 /// Any thread. Makes the directory when it is missing; a problem when it cannot be written to. The pictures
 /// are written by a thread of their own. A disk that does not keep up, or is full, costs pictures, not
 /// frames: they are dropped and counted, and the numbers of those written have no gap.

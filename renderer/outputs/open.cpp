@@ -50,7 +50,8 @@ Places tile_automatic(const WantedOutputs& wanted, const Desktop& desktop) {
 
 model::Problem no_display() {
   return {model::Code::output_unavailable, "", "a display for the window", "none",
-          "Start from a graphical session, or use the kind 'auto' or 'headless'."};
+          "Start the daemon in a graphical session with an output of kind 'window' or 'auto', or use the "
+          "kind 'headless'."};
 }
 
 struct Opener {
@@ -110,14 +111,16 @@ bool needs_windows(const WantedOutputs& wanted) { return any_is<model::WindowOut
 model::Problems test_outputs(const WantedOutputs& wanted, Context& context) {
   model::Problems problems;
   for (const auto& [name, output] : wanted) {
-    const auto* window = std::get_if<model::WindowOutput>(&output.sink);
-    if (!window) continue;
     model::Problems found;
-    if (!context.desktop())
-      found.push_back(no_display());
-    else if (const auto monitor = context.desktop()->find_monitor(window->monitor); !monitor) {
-      found = monitor.error();
-      for (auto& problem : found) problem.pointer = "/outputs/" + name + "/monitor";
+    if (const auto* window = std::get_if<model::WindowOutput>(&output.sink)) {
+      if (!context.desktop()) {
+        found.push_back(no_display());
+      } else if (const auto monitor = context.desktop()->find_monitor(window->monitor); !monitor) {
+        found = monitor.error();
+        for (auto& problem : found) problem.pointer = "/outputs/" + name + "/monitor";
+      }
+    } else if (const auto* files = std::get_if<model::FilesOutput>(&output.sink)) {
+      found = test_files({name, output.width, output.height, files->directory, files->format, files->limit});
     }
     address(found, name);
     problems.insert(problems.end(), found.begin(), found.end());

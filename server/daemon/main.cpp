@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <future>
@@ -45,12 +46,27 @@ struct Options {
 
 using Live = std::unique_ptr<state::LiveState>;
 
+/// Says on the thread "prepare" what would keep outputs from being opened; windows know on the main thread.
+struct OutputTest {
+  outputs::MainThread& main;
+  std::atomic<outputs::Context*> context = nullptr; ///< from when there is one
+
+  [[nodiscard]] model::Problems operator()(const model::Show& show) {
+    model::Problems problems;
+    outputs::Context* const here = context;
+    if (here) main.run([&] { problems = outputs::test_outputs(show.outputs, *here); });
+    return problems;
+  }
+};
+
 /// The first load runs on a thread of its own, so that a signal ends even a long one. Nullopt: asked to stop.
-std::optional<model::Result<Live>> load_unless_stopped(const Options& options, Signals& signals) {
-  std::packaged_task<model::Result<Live>()> task([&options] {
+std::optional<model::Result<Live>> load_unless_stopped(const Options& options, OutputTest& test,
+                                                       Signals& signals) {
+  std::packaged_task<model::Result<Live>()> task([&options, &test] {
     pthread_setname_np(pthread_self(), "prepare");
     state::Options wanted;
     wanted.load_resources = scene_loader(options.config);
+    wanted.test_outputs = [&test](const model::Show& show) { return test(show); };
     return open_show(options.config, std::move(wanted));
   });
   auto loaded = task.get_future();
@@ -102,7 +118,8 @@ ExitCode run(const Options& options) {
   outputs::MainThread main;
   spdlog::info("cupolad {} with {}", CUPOLA_VERSION, options.config);
 
-  auto loaded = load_unless_stopped(options, signals);
+  OutputTest output_test{main};
+  auto loaded = load_unless_stopped(options, output_test, signals);
   if (!loaded) { // the loading thread still runs: nothing may be torn down under it
     service::stopping();
     std::_Exit(exit_done);
@@ -119,6 +136,7 @@ ExitCode run(const Options& options) {
     log_problems(context.error());
     return exit_start;
   }
+  output_test.context = context->get();
   spdlog::info("rendering with {}", (*context)->describe());
 
   Stages stages(*live);

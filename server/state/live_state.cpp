@@ -116,7 +116,7 @@ struct Considered {
   Candidate next;
 };
 
-Considered consider(const SnapshotPtr& base, const Item& item) try {
+Considered consider(const SnapshotPtr& base, const Item& item, const Options& options) try {
   auto candidate =
       plan_candidate(item.is_file() ? loader::load_show(std::get<std::filesystem::path>(item.what))
                                     : edited(*base, std::get<model::Change>(item.what)));
@@ -129,6 +129,11 @@ Considered consider(const SnapshotPtr& base, const Item& item) try {
     Problems problems = refusals(*base, *candidate->snapshot, accepted.differences);
     loader::locate(problems, candidate->positions);
     return {tl::unexpected(std::move(problems)), {base, {}}};
+  }
+  if (accepted.cost == model::Cost::reopen && options.test_outputs) {
+    Problems problems = options.test_outputs(*candidate->snapshot->show);
+    loader::locate(problems, candidate->positions);
+    if (!problems.empty()) return {tl::unexpected(std::move(problems)), {base, {}}};
   }
   const bool files_again = item.is_file() && names_a_file(*candidate->snapshot->show);
   if (accepted.differences.empty() && !files_again) {
@@ -187,7 +192,7 @@ bool LiveState::Impl::process_together(std::vector<Item*>& items) {
   std::vector<Answer> answers;
   bool load_again = false;
   for (const Item* item : items) {
-    Considered considered = consider(candidate.snapshot, *item);
+    Considered considered = consider(candidate.snapshot, *item, options);
     const bool advanced = considered.next.snapshot != candidate.snapshot;
     if (advanced) {
       load_again = load_again || (item->is_file() && names_a_file(*considered.next.snapshot->show));

@@ -57,6 +57,9 @@ struct Options {
   /// Loads what scene.content names. Called on the thread "prepare" (the first time by make()), only when the
   /// content changed, or when a reloaded show names a file. Must not throw. Absent: resources stay null.
   std::function<model::Result<Resources>(const model::Show&)> load_resources;
+  /// What would keep the show's outputs from being opened, or nothing. Called on the thread "prepare", only
+  /// for changes that open outputs; problems refuse the change. Must not throw. Absent: nothing is tested.
+  std::function<model::Problems(const model::Show&)> test_outputs;
   std::size_t max_waiting = 1024; ///< changes beyond these are refused at once (CTL-106)
 };
 

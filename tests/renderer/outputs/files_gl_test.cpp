@@ -109,6 +109,11 @@ TEST_CASE_FIXTURE(Fixture, "a file in place of the folder is a problem, not a su
   REQUIRE_FALSE(output);
   CHECK(output.error().front().code == model::Code::image_unwritable);
   CHECK(output.error().front().pointer == "/outputs/wall/directory");
+  CHECK(outputs::test_files({"wall", 8, 8, folder, "png", 0}).size() == 1);
+  CHECK(outputs::test_files({"wall", 8, 8, folder / "below", "png", 0}).size() == 1);
+  fs::remove(folder);
+  CHECK(outputs::test_files({"wall", 8, 8, folder / "below", "png", 0}).empty());
+  CHECK_FALSE(fs::exists(folder)); // a test makes nothing
 }
 
 TEST_CASE_FIXTURE(Fixture, "closing does not wait for a long queue") {
