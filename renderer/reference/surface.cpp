@@ -54,6 +54,7 @@ glm::vec4 sample_texture(const World& world, const Shading& how, const content::
                          const std::array<glm::vec2, 3>& uvs, const Crossing& crossing) {
   const content::Texture& texture = world.scene->textures[static_cast<std::size_t>(use.texture)];
   const content::MipChain& image = world.images[static_cast<std::size_t>(texture.image)];
+  if (image.levels.empty()) return glm::vec4(1.0f);
   const Mapped at = mapped(uvs, crossing, use.transform);
   const glm::vec2 texels(image.levels.front().width, image.levels.front().height);
   const Footprint print = footprint(at, texels, how.sample_width);
@@ -145,6 +146,8 @@ shading::Surface surface_at(const World& world, const Shading& how, const SeenTr
   surface.occlusion = 1.0f;
   surface.distance = std::max(glm::length(offset), 1e-20f);
   surface.to_eye = offset / -surface.distance;
+  if (!(glm::dot(normal, normal) > 0.0f))
+    normal = glm::vec3(glm::normalize(triangle.plane)); // the mesh has none
   surface.normal = glm::normalize(normal);
   if (material.double_sided && !crossing.front) surface.normal = -surface.normal;
   if (material.metallic_roughness_map.texture >= 0) {

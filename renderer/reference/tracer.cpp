@@ -87,6 +87,25 @@ RTCRay embree_ray(const glm::dvec3& eye, const Ray& ray, double near) {
   return out;
 }
 
+/// Embree's copy of the triangles. Null where it has no memory for them.
+RTCGeometry make_geometry(RTCDevice device, const std::vector<content::Vertex>& vertices,
+                          const std::vector<std::uint32_t>& indices) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* corner = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
+  auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), indices.size() / 3));
+  if (!corner || !index) {
+    rtcReleaseGeometry(geometry);
+    return nullptr;
+  }
+  for (const content::Vertex& vertex : vertices)
+    for (int i = 0; i < 3; ++i) *corner++ = vertex.position[i];
+  std::copy(indices.begin(), indices.end(), index);
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
 /// A viewport's pixels and their rays.
 class Camera {
 public:
@@ -123,6 +142,7 @@ struct Tracer::Impl {
   World world;
   std::unique_ptr<RTCDeviceTy, DeviceDeleter> device;
   std::unique_ptr<RTCSceneTy, SceneDeleter> scene;
+  model::Problems problems;
 
   void build();
   [[nodiscard]] glm::vec4 trace(const Request& request, const Shading& shading, const Ray& ray,
@@ -133,26 +153,30 @@ struct Tracer::Impl {
 };
 
 void Tracer::Impl::build() {
-  RTCScene fresh = rtcNewScene(device.get());
-  scene.reset(fresh);
-  rtcSetSceneFlags(
-      fresh, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
-  const auto& indices = world.scene->geometry.indices;
-  const auto& vertices = world.vertices();
-  if (!indices.empty()) {
-    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* corner = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
-    for (const content::Vertex& vertex : vertices)
-      for (int i = 0; i < 3; ++i) *corner++ = vertex.position[i];
-    void* index = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                          3 * sizeof(unsigned), indices.size() / 3);
-    std::copy(indices.begin(), indices.end(), static_cast<std::uint32_t*>(index));
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(fresh, geometry);
-    rtcReleaseGeometry(geometry);
+  problems.clear();
+  scene.reset(device ? rtcNewScene(device.get()) : nullptr);
+  if (scene) {
+    rtcSetSceneFlags(scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
+                                                             RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+    const auto& indices = world.scene->geometry.indices;
+    if (!indices.empty()) {
+      if (RTCGeometry geometry = make_geometry(device.get(), world.vertices(), indices)) {
+        rtcAttachGeometry(scene.get(), geometry);
+        rtcReleaseGeometry(geometry);
+      }
+    }
+    rtcCommitScene(scene.get());
   }
-  rtcCommitScene(fresh);
+  const RTCError error = rtcGetDeviceError(device.get());
+  if (scene && error == RTC_ERROR_NONE) return;
+  scene.reset();
+  problems.push_back(
+      {.code = model::Code::rays_unavailable,
+       .pointer = "",
+       .expected =
+           "a ray structure of " + std::to_string(world.scene->geometry.indices.size() / 3) + " triangles",
+       .found = "Embree's error " + std::to_string(static_cast<int>(error)),
+       .advice = error == RTC_ERROR_OUT_OF_MEMORY ? "Use a smaller scene or more memory." : ""});
 }
 
 /// Colour and opacity of what the ray meets, nearest first; colours are multiplied by opacity already.
@@ -241,6 +265,8 @@ Tracer::Tracer(std::shared_ptr<const content::Scene> scene, const content::Pose*
 
 Tracer::~Tracer() = default;
 
+const model::Problems& Tracer::problems() const { return impl_->problems; }
+
 void Tracer::move(const content::Pose& pose) {
   World& world = impl_->world;
   const auto& still = world.scene->geometry.vertices;
@@ -252,6 +278,7 @@ void Tracer::move(const content::Pose& pose) {
 }
 
 bool Tracer::render(const Request& request, Picture& picture) const {
+  if (!impl_->problems.empty()) return false;
   const Camera camera(request);
   Shading shading;
   shading.lighting = content::lighting_of(request.scene);

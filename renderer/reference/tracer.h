@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 
+#include "configs/model/problem.h"
 #include "configs/model/show.h"
 #include "renderer/content/scene.h"
 #include "renderer/projection/map.h"
@@ -45,6 +46,10 @@ public:
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
+  /// Why the last build failed (rays_unavailable: too little memory); empty as a rule. While there are any,
+  /// render refuses.
+  [[nodiscard]] const model::Problems& problems() const;
+
   /// The scene at another time: copies the pose and builds anew. Not while a render runs.
   void move(const content::Pose& pose);
 
@@ -56,7 +61,8 @@ public:
   /// stays, as when pixels are discarded. Near: a surface at eye + x · ray(s,t) is drawn for x >= near, with
   /// the ray's own length: the same w = near at which the piecewise method clips (a perspective's depth, a
   /// cylinder's distance from the axis, a fisheye's distance). The result does not depend on the number of
-  /// threads. False when cancelled: parts of the rectangle are then undrawn.
+  /// threads. False when cancelled, when parts
+  /// of the rectangle are undrawn, and where there are problems().
   bool render(const Request& request, Picture& picture) const;
 
 private:

@@ -125,6 +125,8 @@ void add_compare(CLI::App& app, ExitCode& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("compare", "Says how far two pictures are apart: PSNR, SSIM, largest difference.");
+  command->footer("Exit 0 within the limits, 1 beyond them or where sizes differ, 2 unreadable. Equal "
+                  "pictures have a PSNR of 999.");
   command->add_option("a", options->got, "A picture")->required()->type_name("FILE");
   command->add_option("b", options->wanted, "The picture that it should be")->required()->type_name("FILE");
   command->add_option("--min-psnr", options->min_psnr, "Exit 1 where the PSNR is lower, dB");

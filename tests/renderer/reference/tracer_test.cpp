@@ -277,6 +277,19 @@ TEST_CASE("a pose moves the vertices that move, and the lights") {
   check_color(picture.at(6, 4), red);
 }
 
+TEST_CASE("a mesh without normals is lit by its faces; a texture without pixels is white") {
+  SmallScene scene;
+  content::Material grey;
+  grey.base_color = glm::vec4(0.5f, 0.5f, 0.5f, 1.0f);
+  grey.base_color_map.texture = scene.texture(0, 0, {}, true);
+  scene.wall(scene.material(grey), -3.0f);
+  for (content::Vertex& vertex : scene.scene.geometry.vertices) vertex.normal = glm::vec3(0.0f);
+  Request asked = square(5);
+  asked.scene.sun = {{180.0}, {0.0}, {1.0, 1.0, 1.0}, 1.0};
+  asked.scene.sky.intensity = 0.0;
+  check_color(render(scene, asked).at(2, 2), glm::vec3(0.49f));
+}
+
 TEST_CASE("a scene without a triangle is all background") {
   Request asked = square(4);
   asked.background = {0.1, 0.2, 0.3};
@@ -291,6 +304,8 @@ TEST_CASE("the encoding is that of displays") {
   Picture picture(1, 1, {0.0, 0.0, 0.0});
   picture.at(0, 0) = {0.2158605f, -1.0f, 7.0f, 0.5f};
   CHECK(encoded(picture) == std::vector<std::uint8_t>{128, 0, 255, 128});
+  picture.at(0, 0) = {std::nanf(""), 0.0031308f, 1.0f, 2.0f};
+  CHECK(encoded(picture) == std::vector<std::uint8_t>{0, 10, 255, 255});
 }
 
 } // namespace cupola::reference
