@@ -51,7 +51,7 @@ class Tree:
 
     def may_see(self, room, other):
         def matches(pattern):
-            return other.startswith(pattern[:-1]) if pattern.endswith("*") else other == pattern
+            return other.startswith(pattern[:-1]) if pattern.endswith("*") else (other + "/").startswith(pattern + "/")
         if other == "tests" and room != "tests":
             return False
         return room == other or any(matches(pattern) for pattern in self.house["rooms"][room])
@@ -136,18 +136,33 @@ def nothing_left_undone(tree):
             for number, line in enumerate(text.splitlines(), 1) if (found := mark.search(line))]
 
 
+def globbed(call_file, text, word, files):
+    """What `word` of a cupola_embed() list stands for: a file, or the files of a variable made by file(GLOB)."""
+    here = call_file[:-len("CMakeLists.txt")]
+    if not word.startswith("${"):
+        return [path for path in (here + word, word) if path in files][:1]
+    found = []
+    for patterns in re.findall(rf"file\(GLOB {re.escape(word[2:-1])}\b([^)]*)\)", text):
+        for pattern in patterns.split():
+            pattern = pattern.replace("${CMAKE_CURRENT_SOURCE_DIR}/", here).replace("${PROJECT_SOURCE_DIR}/", "")
+            shape = re.compile(re.escape(pattern).replace(r"\*", "[^/]*"))
+            found += [path for path in files if shape.fullmatch(path)]
+    return found
+
+
 def shaders_are_embedded(tree):
     """Every .glsl stands in a cupola_embed() list, and nothing else does."""
     listed, wrong = set(), []
     for path, text in tree.files.items():
         if not path.endswith("CMakeLists.txt"):
             continue
-        for call in re.findall(r"cupola_embed\(([^)]*)\)", re.sub(r"#.*", "", text)):
+        text = re.sub(r"#.*", "", text)
+        for call in re.findall(r"cupola_embed\(([^)]*)\)", text):
             words = call.split()
             for word in words[words.index("FILES") + 1:] if "FILES" in words else []:
-                here = f"{path[:-len('CMakeLists.txt')]}{word}"
-                listed.add(here if here in tree.files else word)
-                if here not in tree.files and word not in tree.files:
+                found = globbed(path, text, word, tree.files)
+                listed.update(found)
+                if not found:
                     wrong.append(f"{path}: cupola_embed names {word}, which does not exist")
     shaders = {path for path in tree.files if path.endswith(".glsl")}
     return wrong + [f"{path}: in no cupola_embed() list" for path in sorted(shaders - listed)]

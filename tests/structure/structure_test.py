@@ -59,6 +59,8 @@ BROKEN = {
     rules.shaders_are_embedded: [
         {"renderer/projection/dome.glsl": ""},
         {"renderer/gl/CMakeLists.txt": "cupola_embed(renderer_gl FILES renderer/projection/map.glsl gone.glsl)\n"},
+        {"renderer/gl/CMakeLists.txt": "file(GLOB s CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/renderer/*.glsl)\n"
+                                       "cupola_embed(renderer_gl FILES ${s})\n"},
     ],
     rules.dependencies_are_explained: [
         {"CMakeLists.txt": "find_package(glm REQUIRED)\nfind_package(TBB)\n"},
@@ -93,6 +95,12 @@ class TheRules(unittest.TestCase):
 
     def test_good_tree_passes(self):
         self.assertEqual({}, {rule.__name__: found for rule, found in broken_tree({}).items() if found})
+
+    def test_shaders_may_be_globbed(self):
+        found = broken_tree({"renderer/gl/CMakeLists.txt":
+                             "file(GLOB s RELATIVE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/renderer/*/*.glsl)\n"
+                             "cupola_embed(renderer_gl FILES ${s})\n"})
+        self.assertEqual([], found[rules.shaders_are_embedded])
 
     def test_every_rule_has_a_broken_tree(self):
         self.assertEqual(set(rules.ALL), set(BROKEN))
