@@ -14,7 +14,6 @@ namespace cupola::loader {
 using model::Code;
 using model::Kind;
 using model::Parameter;
-using model::Problem;
 using model::Type;
 
 namespace {
@@ -266,8 +265,7 @@ bool Decoder::text(const std::string& value, const std::string& at) {
 /// A show of another version is not judged by the rules of this one.
 bool other_version(const Json& document, Report& report) {
   const auto given = document.is_object() ? document.find("version") : document.end();
-  if (!document.is_object() || given == document.end() || !given->is_number() ||
-      *given == newest_version)
+  if (!document.is_object() || given == document.end() || !given->is_number() || *given == newest_version)
     return false;
   report.add({Code::version_unsupported, "/version", "version " + std::to_string(newest_version),
               shown(*given),

@@ -55,7 +55,8 @@ void Snapshots::request(std::string output, std::optional<int> max_width, Snapsh
     else
       requests_.push_back({std::move(output), max_width, std::move(callback)});
   }
-  if (refused) callback(model::failure(std::move(*refused)));
+  if (refused) // NOLINTNEXTLINE(bugprone-use-after-move): moved only where it was not refused
+    callback(model::failure(std::move(*refused)));
 }
 
 void Snapshots::accept() {

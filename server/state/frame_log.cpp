@@ -72,7 +72,7 @@ void FrameLog::when_shown(model::Revision revision, std::chrono::milliseconds ti
     if (!frame) waiting_.push_back({revision, Clock::now() + timeout, std::move(callback)});
   }
   if (frame)
-    callback(frame);
+    callback(frame); // NOLINT(bugprone-use-after-move): moved only without a frame
   else
     wake();
 }

@@ -297,7 +297,7 @@ void LiveState::Impl::enqueue(Item item) {
   }
   if (!refusal)
     arrived.notify_one();
-  else if (item.answer)
+  else if (item.answer) // NOLINT(bugprone-use-after-move): moved only without a refusal
     item.answer(model::failure(std::move(*refusal)));
 }
 

@@ -31,7 +31,7 @@ struct Fixture {
     fs::remove_all(folder);
   }
 
-  std::unique_ptr<outputs::Output> open(outputs::FilesOptions options) {
+  std::unique_ptr<outputs::Output> open(const outputs::FilesOptions& options) {
     auto output = outputs::open_files(options);
     if (!output) FAIL(model::to_text(output.error().front()));
     return std::move(*output);
