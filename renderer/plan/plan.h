@@ -31,10 +31,11 @@ struct Piece {
   /// Inside where dot(plane, v) >= 0 for all: two for a strip (left, right), three for a triangle.
   std::array<glm::dvec3, 3> planes;
   int plane_count = 0;
-  PixelRect bounds; ///< pixels of the output that it may touch; strips: exactly these
+  PixelRect bounds; ///< pixels (of the rect given) that it may touch; strips: exactly these
 };
 
-/// All pieces of a viewport. Strips stand in order from left to right.
+/// All pieces of a viewport. Strips stand in order from left to right; a perspective is one piece without
+/// planes.
 struct PieceSet {
   std::vector<Piece> pieces;
   bool strips = false;    ///< pieces are full-height columns: a scissor can replace the planes
@@ -47,6 +48,10 @@ struct CubeFace {
   bool seen = false;
   PixelRect crop; ///< the part of the face that is seen, in face pixels, y downwards as GL's face t runs
 };
+/// By face: the directions of its s and t and of its middle, as columns, in view axes. A direction d stands
+/// on the face at (s, t) = (axes[0]·d, axes[1]·d) / axes[2]·d, [-1,1] from edge to edge; texel rows follow t.
+[[nodiscard]] const std::array<glm::dmat3, 6>& cube_face_axes();
+
 struct CubemapPlan {
   int size = 0; ///< pixels along an edge
   std::array<CubeFace, 6> faces;
@@ -81,12 +86,23 @@ struct Planned {
 /// Precondition: the show has passed the loader's checks.
 [[nodiscard]] model::Result<Planned> make_plan(const model::Show& show);
 
-/// The strips of a cylinder [Lorenz & Döllner, sec. 3.1], as few as keep within `max_error` pixels; also of a
-/// perspective, which is one piece.
+/// The strips of a cylinder [Lorenz & Döllner, sec. 3.1], as few as keep within `max_error` pixels of `rect`,
+/// or of one pixel's width where that is not enough (then PieceSet::max_error exceeds it); also of a
+/// perspective, which is one piece. Borders stand on whole pixels; at half a turn, where zoom shows more than
+/// a full turn, on the seam itself. nullopt for other shapes, an eye outside its shape, and where strips of
+/// one pixel would still be too wide for a perspective. For a supersampled picture scale bounds, or pass a
+/// larger `rect`.
 [[nodiscard]] std::optional<PieceSet> make_strips(const projection::Map& map, const PixelRect& rect,
                                                   double max_error);
 
-/// Size and seen parts of the cubemap for one viewport. `size`: given, or by the greatest pixel density.
+inline constexpr int min_cubemap_size = 16, max_cubemap_size = 8192; ///< that "auto" may choose
+
+/// Edge of a face whose texels match the pixels of the viewport (projection::matched_density), a multiple of
+/// 8, without limits.
+[[nodiscard]] int matched_cubemap_size(const projection::Map& map, const PixelRect& rect);
+
+/// Size and seen parts of the cubemap for one viewport, with two texels around them for filtering. `size`:
+/// given, or the matched one within the limits.
 [[nodiscard]] CubemapPlan make_cubemap(const projection::Map& map, const PixelRect& rect,
                                        std::optional<int> size);
 

@@ -1,0 +1,199 @@
+#include "renderer/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <tuple>
+#include <utility>
+
+namespace cupola::plan {
+
+namespace {
+
+using model::Code;
+using model::Severity;
+
+constexpr int max_edge = 16384;          ///< pixels that any picture may have along an edge
+constexpr std::size_t max_strips = 4096; ///< of a viewport
+
+/// Pixel borders of a fraction. Ties go up even when the sum of two fractions misses by a rounding, so that
+/// viewports that meet in the file meet in pixels.
+int pixel_border(double fraction, int pixels) {
+  return std::clamp(static_cast<int>(std::floor(fraction * pixels + 0.5 + 1e-6)), 0, pixels);
+}
+
+PixelRect pixel_rect(const model::Viewport& viewport, const model::Output& output) {
+  const int left = pixel_border(viewport.x, output.width), top = pixel_border(viewport.y, output.height);
+  return {left, top, pixel_border(viewport.x + viewport.width, output.width) - left,
+          pixel_border(viewport.y + viewport.height, output.height) - top};
+}
+
+PixelRect enlarged(const PixelRect& rect, int factor) {
+  return {rect.x * factor, rect.y * factor, rect.width * factor, rect.height * factor};
+}
+
+std::string_view kind(const model::Shape& shape) {
+  constexpr std::array<std::string_view, 4> names{"perspective", "cylinder", "fisheye", "equirectangular"};
+  return names[shape.index()];
+}
+
+class Planner {
+public:
+  explicit Planner(const model::Show& show)
+      : show_(show) {}
+
+  model::Result<Planned> run() {
+    check_projections();
+    for (const auto& [name, output] : show_.outputs) add_output(name, output);
+    if (model::has_errors(problems_)) return tl::unexpected(std::move(problems_));
+    add_cubemap();
+    return Planned{std::move(plan_), std::move(problems_)};
+  }
+
+private:
+  void report(Code code, std::string pointer, std::string expected, std::string found, std::string advice,
+              Severity severity = Severity::error) {
+    problems_.push_back(
+        {code, std::move(pointer), std::move(expected), std::move(found), std::move(advice), {}, severity});
+  }
+
+  void check_projections() {
+    for (const auto& [name, projection] : show_.projections) {
+      if (projection::inside(projection::make_map(projection, 1.0))) continue;
+      const glm::dvec3& o = projection.off_axis;
+      const bool cylinder = std::holds_alternative<model::Cylinder>(projection.shape);
+      report(Code::degenerate_projection, "/projections/" + name + "/off_axis",
+             cylinder ? "a vector whose x and z are together shorter than 1, so that the eye stays inside "
+                        "the cylinder"
+                      : "a vector shorter than 1, so that the eye stays inside the shape",
+             fmt::format("length {:.4g}", cylinder ? std::hypot(o.x, o.z) : std::hypot(o.x, o.y, o.z)),
+             "Shorten the vector.");
+    }
+  }
+
+  void add_output(const std::string& name, const model::Output& output) {
+    OutputPlan made{name, output.width, output.height, {}};
+    std::vector<std::pair<int, std::string>> sequence;
+    for (const auto& [viewport_name, viewport] : output.viewports)
+      sequence.emplace_back(viewport.order, viewport_name);
+    std::sort(sequence.begin(), sequence.end()); // equal orders: by name
+    for (const auto& [order, viewport_name] : sequence) {
+      const std::string pointer = fmt::format("/outputs/{}/viewports/{}", name, viewport_name);
+      if (auto viewport = make_viewport(pointer, output, viewport_name))
+        made.viewports.push_back(std::move(*viewport));
+    }
+    plan_.outputs.push_back(std::move(made));
+  }
+
+  std::optional<ViewportPlan> make_viewport(const std::string& pointer, const model::Output& output,
+                                            const std::string& name) {
+    const model::Viewport& viewport = output.viewports.at(name);
+    const auto named = show_.projections.find(viewport.projection);
+    if (named == show_.projections.end()) {
+      report(Code::unknown_reference, pointer + "/projection", "the name of a projection",
+             viewport.projection, "Define it under /projections.");
+      return std::nullopt;
+    }
+    ViewportPlan made;
+    made.name = name;
+    made.rect = pixel_rect(viewport, output);
+    made.method = viewport.method;
+    if (!check_size(pointer, made.rect)) return std::nullopt;
+    made.map = projection::make_map(named->second, double(made.rect.width) / made.rect.height);
+    if (!projection::inside(made.map)) return std::nullopt; // reported with the projection
+    if (made.method == model::Method::piecewise) add_pieces(pointer, named->second.shape, made);
+    return made;
+  }
+
+  bool check_size(const std::string& pointer, const PixelRect& rect) {
+    const int factor = show_.quality.supersampling;
+    bool good = true;
+    for (const auto& [key, pixels] : {std::pair{"width", rect.width}, {"height", rect.height}}) {
+      if (pixels < 1) {
+        report(Code::empty_viewport, fmt::format("{}/{}", pointer, key), "at least one pixel", "none",
+               "Enlarge the viewport or its output.");
+        good = false;
+      } else if (pixels > max_edge / factor) {
+        report(Code::over_budget, fmt::format("{}/{}", pointer, key),
+               fmt::format("at most {} pixels with /quality/supersampling", max_edge),
+               fmt::format("{} times {}", pixels, factor), "Lower /quality/supersampling.");
+        good = false;
+      }
+    }
+    return good;
+  }
+
+  void add_pieces(const std::string& pointer, const model::Shape& shape, ViewportPlan& viewport) {
+    if (!std::holds_alternative<model::Cylinder>(shape) &&
+        !std::holds_alternative<model::Perspective>(shape)) {
+      report(Code::pieces_unsupported, pointer + "/method", "'cubemap' or 'reference' for this projection",
+             fmt::format("'piecewise' with kind '{}'", kind(shape)), "Use the method 'cubemap'.");
+      return;
+    }
+    const double wanted = show_.pieces.max_error;
+    viewport.pieces = make_strips(viewport.map, viewport.rect, wanted);
+    if (!viewport.pieces) {
+      report(Code::degenerate_projection, pointer + "/method",
+             "pixels that show less than a third of a turn each, and at least one that shows anything",
+             fmt::format("{} pixels across", viewport.rect.width),
+             "Widen the viewport, or use the method 'cubemap'.");
+    } else if (viewport.pieces->pieces.size() > max_strips) {
+      report(Code::over_budget, pointer + "/method", fmt::format("at most {} strips", max_strips),
+             fmt::format("{}", viewport.pieces->pieces.size()), "Raise /pieces/max_error.");
+    } else if (viewport.pieces->max_error > wanted) {
+      report(Code::over_budget, pointer + "/method", fmt::format("an error of at most {} pixels", wanted),
+             fmt::format("{:.3g} with strips of one pixel", viewport.pieces->max_error),
+             "Widen the viewport, or raise /pieces/max_error.", Severity::warning);
+    }
+  }
+
+  template <class F>
+  void each_cubemap_viewport(F f) const {
+    for (const OutputPlan& output : plan_.outputs)
+      for (const ViewportPlan& viewport : output.viewports)
+        if (viewport.method == model::Method::cubemap) f(viewport);
+  }
+
+  /// One cubemap for all: the finest size, and all that any of them sees.
+  void add_cubemap() {
+    int size = 0;
+    each_cubemap_viewport([&](const ViewportPlan& viewport) {
+      size = std::max(
+          size, matched_cubemap_size(viewport.map, enlarged(viewport.rect, show_.quality.supersampling)));
+    });
+    if (size == 0) return;
+    if (show_.quality.cubemap_size) {
+      size = *show_.quality.cubemap_size;
+    } else if (size > max_cubemap_size) {
+      report(Code::over_budget, "/quality/cubemap_size",
+             fmt::format("at most {} pixels for 'auto'", max_cubemap_size), fmt::format("{}", size),
+             "The cubemap is coarser than the densest projection. Give a size to have it otherwise.",
+             Severity::warning);
+    }
+    if (!show_.quality.cubemap_size) size = std::clamp(size, min_cubemap_size, max_cubemap_size);
+    CubemapPlan all{size, {}};
+    each_cubemap_viewport([&](const ViewportPlan& viewport) {
+      const CubemapPlan one = make_cubemap(viewport.map, viewport.rect, size);
+      for (std::size_t i = 0; i < all.faces.size(); ++i) all.faces[i] = united(all.faces[i], one.faces[i]);
+    });
+    plan_.cubemap = all;
+  }
+
+  static CubeFace united(const CubeFace& a, const CubeFace& b) {
+    if (!a.seen || !b.seen) return a.seen ? a : b;
+    const int x = std::min(a.crop.x, b.crop.x), y = std::min(a.crop.y, b.crop.y);
+    return {true,
+            {x, y, std::max(a.crop.x + a.crop.width, b.crop.x + b.crop.width) - x,
+             std::max(a.crop.y + a.crop.height, b.crop.y + b.crop.height) - y}};
+  }
+
+  const model::Show& show_;
+  Plan plan_;
+  model::Problems problems_;
+};
+
+} // namespace
+
+model::Result<Planned> make_plan(const model::Show& show) { return Planner(show).run(); }
+
+} // namespace cupola::plan
