@@ -111,7 +111,7 @@ Image paint_tiled_roof() { // pantiles, 0.3 m by 0.375 m
 }
 
 Image paint_grass() {
-  Canvas canvas(512, 12.0f, rgb(0x5f7d3c));
+  Canvas canvas(512, 12.0f, rgb(0x4f6a36));
   canvas.grain(4, 5, 0.14f, 111);
   canvas.grain(64, 3, 0.22f, 112);
   return canvas.image("grass");

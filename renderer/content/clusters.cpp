@@ -21,8 +21,10 @@ struct Box {
 
 class Splitter {
 public:
-  Splitter(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& triangles)
+  Splitter(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& triangles,
+           std::size_t largest)
       : triangles_(triangles)
+      , largest_(largest)
       , order_(triangles.size() / 3)
       , middles_(triangles.size() / 3) {
     std::iota(order_.begin(), order_.end(), 0U);
@@ -38,7 +40,7 @@ public:
   void split(std::size_t first, std::size_t last, const Emit& emit) {
     const std::size_t count = last - first;
     const auto at = [this](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    if (count <= cluster_triangles) {
+    if (count <= largest_) {
       std::sort(at(first), at(last)); // the order that the generator or file had
       emit(first, last);
       return;
@@ -47,7 +49,7 @@ public:
     for (std::size_t i = first; i < last; ++i) box.add(middles_[order_[i]]);
     const glm::vec3 size = box.high - box.low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.z >= size.y ? 2 : 1);
-    const std::size_t parts = (count + cluster_triangles - 1) / cluster_triangles;
+    const std::size_t parts = (count + largest_ - 1) / largest_;
     const std::size_t middle = first + count * (parts / 2) / parts;
     std::nth_element(at(first), at(middle), at(last), [&](std::uint32_t a, std::uint32_t b) {
       const float left = middles_[a][axis];
@@ -65,24 +67,39 @@ public:
 
 private:
   const std::vector<std::uint32_t>& triangles_;
+  std::size_t largest_;
   std::vector<std::uint32_t> order_;
   std::vector<glm::vec3> middles_;
 };
 
-} // namespace
-
-void set_bounds(Cluster& cluster, std::span<const Vertex> vertices, std::span<const std::uint32_t> indices) {
+template <class Position>
+void enclose(Cluster& cluster, std::span<const std::uint32_t> indices, const Position& position) {
   const auto own = indices.subspan(cluster.first_index, cluster.index_count);
   if (own.empty()) return;
   Box box;
-  for (const std::uint32_t index : own) box.add(vertices[index].position);
+  for (const std::uint32_t index : own) box.add(position(index));
   cluster.center = box.low * 0.5f + box.high * 0.5f;
   float farthest = 0.0f;
   for (const std::uint32_t index : own) {
-    const glm::vec3 offset = vertices[index].position - cluster.center;
+    const glm::vec3 offset = position(index) - cluster.center;
     farthest = std::max(farthest, glm::dot(offset, offset));
   }
   cluster.radius = std::sqrt(farthest) * 1.000001f; // no vertex outside for rounding
+}
+
+} // namespace
+
+void set_bounds(Cluster& cluster, std::span<const Vertex> vertices, std::span<const std::uint32_t> indices) {
+  enclose(cluster, indices,
+          [&](std::uint32_t index) -> const glm::vec3& { return vertices[index].position; });
+}
+
+void set_moving_bounds(const Geometry& geometry, std::uint32_t static_vertices, std::span<const Vertex> moved,
+                       Cluster& cluster) {
+  enclose(cluster, geometry.indices, [&](std::uint32_t index) -> const glm::vec3& {
+    return index < static_vertices ? geometry.vertices[index].position
+                                   : moved[index - static_vertices].position;
+  });
 }
 
 void make_clusters(Geometry& geometry, std::vector<std::vector<std::uint32_t>>& triangles,
@@ -94,13 +111,14 @@ void make_clusters(Geometry& geometry, std::vector<std::vector<std::uint32_t>>& 
   });
   std::size_t total = 0;
   for (const auto& list : triangles) total += list.size();
+  const std::size_t largest = std::clamp<std::size_t>(total / 3 / 512, 32, most_cluster_triangles);
   geometry.indices.clear();
   geometry.indices.reserve(total);
   geometry.clusters.clear();
   for (const std::size_t material : order) {
     std::vector<std::uint32_t>& list = triangles[material];
     if (list.empty()) continue;
-    Splitter splitter(geometry.vertices, list);
+    Splitter splitter(geometry.vertices, list, largest);
     splitter.split(0, splitter.count(), [&](std::size_t first, std::size_t last) {
       Cluster cluster;
       cluster.first_index = static_cast<std::uint32_t>(geometry.indices.size());

@@ -1,0 +1,206 @@
+#include "renderer/content/gltf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "renderer/content/clusters.h"
+#include "renderer/content/gltf_document.h"
+#include "renderer/content/gltf_materials.h"
+#include "renderer/content/gltf_meshes.h"
+#include "renderer/content/gltf_nodes.h"
+#include "renderer/content/rig.h"
+
+namespace cupola::content {
+namespace {
+
+using gltf::path;
+
+/// From a checked document to a scene: everything at its place at time 0, what moves at the end.
+class Assembler {
+public:
+  Assembler(const gltf::Document& document, const model::Gltf& wish, gltf::Report& report)
+      : document_(document)
+      , report_(report) {
+    rig_.scale = static_cast<float>(wish.scale);
+    gltf::read_nodes(document, rig_, report);
+    if (!report.failed()) gltf::read_skins(document, rig_, report);
+    if (!report.failed()) gltf::read_animation(document, wish.animation, rig_, report);
+  }
+
+  void assemble(Scene& scene) {
+    std::vector<int> sets;
+    gltf::read_materials(document_, scene, sets, report_);
+    const std::vector<bool> shown = gltf::shown_nodes(document_, rig_, report_);
+    if (report_.failed()) return;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      const Material& m = scene.materials[i];
+      needs_.push_back({sets[i], m.base_color_map.texture >= 0 || m.emissive_map.texture >= 0 ||
+                                     m.normal_map.texture >= 0 || m.metallic_roughness_map.texture >= 0 ||
+                                     m.occlusion_map.texture >= 0});
+    }
+    for (const std::size_t node : rig_.order)
+      if (shown[node]) collect(node);
+    collect_lights(shown);
+    if (report_.failed()) return;
+    if (placed_.empty())
+      report_.warning("/scenes", "a mesh of triangles in the scene", "none", "Nothing is shown.");
+    fill(scene);
+  }
+
+private:
+  struct Placed {
+    RigPart part;
+    const gltf::Primitive* primitive;
+    bool moves;
+  };
+
+  const std::vector<gltf::Primitive>& primitives(std::size_t mesh) {
+    const auto known = meshes_.find(mesh);
+    if (known != meshes_.end()) return known->second;
+    auto read = gltf::read_mesh(document_, mesh, needs_, budget_, report_);
+    return meshes_[mesh] = read ? std::move(*read) : std::vector<gltf::Primitive>{};
+  }
+
+  void collect(std::size_t node) {
+    const tinygltf::Node& from = document_.model.nodes[node];
+    if (from.mesh < 0 || report_.failed()) return;
+    for (const gltf::Primitive& primitive : primitives(static_cast<std::size_t>(from.mesh))) {
+      RigPart part{primitive.mesh, node, -1, 0};
+      if (from.skin >= 0 && primitive.mesh->influences > 0) {
+        const std::size_t joints = rig_.skins[static_cast<std::size_t>(from.skin)].joints.size();
+        if (primitive.most_joint >= joints)
+          report_.invalid(path("nodes", node, "/skin"),
+                          "a skin with more than " + std::to_string(primitive.most_joint) +
+                              " joints, which the mesh uses",
+                          std::to_string(joints));
+        part.skin = from.skin;
+      } else if (from.skin >= 0) {
+        report_.warning(path("nodes", node, "/skin"), "a mesh with joints and weights", "one without",
+                        "It does not bend.");
+      }
+      if (!budget_.take(primitive.mesh->vertices.size(), primitive.triangles.size() / 3, 0,
+                        path("nodes", node), report_))
+        return;
+      placed_.push_back({std::move(part), &primitive, false});
+    }
+  }
+
+  void collect_lights(const std::vector<bool>& shown) {
+    const std::vector<Light> lights = gltf::read_lights(document_, report_);
+    for (const std::size_t node : rig_.order) {
+      const auto& extensions = document_.model.nodes[node].extensions;
+      const auto found = extensions.find("KHR_lights_punctual");
+      if (!shown[node] || found == extensions.end() || !found->second.Has("light")) continue;
+      const auto index = static_cast<std::size_t>(found->second.Get("light").GetNumberAsInt());
+      if (index < lights.size()) rig_.lights.push_back({node, lights[index]});
+    }
+  }
+
+  [[nodiscard]] double duration() const {
+    float last = 0.0f;
+    for (const RigChannel& channel : rig_.channels) last = std::max(last, channel.times.back());
+    return last;
+  }
+
+  /// Which parts change with time; answers whether anything does, lights included.
+  bool find_movement() {
+    const std::vector<bool> nodes = gltf::moving_nodes(rig_);
+    std::vector<bool> morphing(rig_.nodes.size(), false);
+    for (const RigChannel& channel : rig_.channels)
+      if (channel.path == RigPath::weights && channel.times.size() > 1) morphing[channel.node] = true;
+    bool any = false;
+    for (Placed& placed : placed_) {
+      placed.moves = morphing[placed.part.node];
+      if (placed.part.skin < 0) {
+        placed.moves = placed.moves || nodes[placed.part.node];
+      } else {
+        for (const std::size_t joint : rig_.skins[static_cast<std::size_t>(placed.part.skin)].joints)
+          placed.moves = placed.moves || nodes[joint];
+      }
+      any = any || placed.moves;
+    }
+    for (const RigLight& light : rig_.lights) any = any || nodes[light.node];
+    return any;
+  }
+
+  void fill(Scene& scene) {
+    const bool anything_moves = find_movement();
+    std::stable_partition(placed_.begin(), placed_.end(), [](const Placed& placed) { return !placed.moves; });
+    const RigState state = rig_state(rig_, 0.0);
+    std::size_t vertices = 0;
+    for (const Placed& placed : placed_) vertices += placed.part.mesh->vertices.size();
+    scene.geometry.vertices.resize(vertices);
+    std::vector<std::vector<std::uint32_t>> triangles(scene.materials.size());
+    std::size_t first = 0;
+    bool finite = true;
+    for (Placed& placed : placed_) {
+      placed.part.first_vertex = first;
+      place_part(rig_, state, placed.part, scene.geometry.vertices.data() + first);
+      const bool mirrored = is_mirrored(rig_, state, placed.part);
+      const auto& corners = placed.primitive->triangles;
+      auto& list = triangles[placed.primitive->material];
+      for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+        for (const std::size_t k :
+             {std::size_t{0}, std::size_t{mirrored ? 2U : 1U}, std::size_t{mirrored ? 1U : 2U}})
+          list.push_back(static_cast<std::uint32_t>(first) + corners[i + k]);
+      const std::size_t end = first + placed.part.mesh->vertices.size();
+      for (std::size_t i = first; i < end; ++i) {
+        const glm::vec3& p = scene.geometry.vertices[i].position;
+        finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+      }
+      first = end;
+      if (placed.moves)
+        rig_.parts.push_back(placed.part);
+      else
+        scene.static_vertices = static_cast<std::uint32_t>(end);
+    }
+    if (!finite) report_.invalid("/nodes", "places within the range of floats", "matrices that leave it");
+    make_clusters(scene.geometry, triangles, scene.materials);
+    set_scene_bounds(scene);
+    for (const RigLight& light : rig_.lights) scene.lights.push_back(place_light(rig_, state, light));
+    if (!anything_moves) return;
+    scene.duration = duration();
+    find_moving_clusters(scene);
+    scene.rig = std::make_shared<Rig>(std::move(rig_));
+  }
+
+  void find_moving_clusters(const Scene& scene) {
+    const Geometry& geometry = scene.geometry;
+    for (std::size_t i = 0; i < geometry.clusters.size(); ++i) {
+      const Cluster& cluster = geometry.clusters[i];
+      const auto begin = geometry.indices.begin() + cluster.first_index;
+      if (std::any_of(begin, begin + cluster.index_count,
+                      [&](std::uint32_t index) { return index >= scene.static_vertices; }))
+        rig_.moving_clusters.push_back(i);
+    }
+  }
+
+  const gltf::Document& document_;
+  gltf::Report& report_;
+  Rig rig_;
+  std::vector<gltf::MaterialNeed> needs_;
+  std::map<std::size_t, std::vector<gltf::Primitive>> meshes_;
+  std::vector<Placed> placed_;
+  gltf::Budget budget_;
+};
+
+} // namespace
+
+model::Result<LoadedScene> load_gltf(const model::Gltf& wish, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / wish.file;
+  gltf::Report report(file.string());
+  gltf::Container container;
+  gltf::Document document;
+  auto scene = std::make_shared<Scene>();
+  if (gltf::read_container(file, container, report) &&
+      gltf::read_document(container, file.parent_path(), document, report)) {
+    Assembler assembler(document, wish, report);
+    if (!report.failed()) assembler.assemble(*scene);
+  }
+  if (report.failed()) return tl::unexpected<model::Problems>(report.take());
+  return LoadedScene{std::move(scene), report.take()};
+}
+
+} // namespace cupola::content
