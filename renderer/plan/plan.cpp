@@ -13,7 +13,9 @@ namespace {
 using model::Code;
 using model::Severity;
 
-constexpr int max_edge = 16384;          ///< pixels that any picture may have along an edge
+constexpr int max_edge = 16384; ///< pixels that any picture may have along an edge
+constexpr int coarsest_mip =
+    16; ///< minification up to which mipmapped cubemaps are right beyond a crop's edge
 constexpr std::size_t max_strips = 4096; ///< of a viewport
 
 /// Pixel borders of a fraction. Ties go up even when the sum of two fractions misses by a rounding, so that
@@ -173,10 +175,27 @@ private:
     if (!show_.quality.cubemap_size) size = std::clamp(size, min_cubemap_size, max_cubemap_size);
     CubemapPlan all{size, {}};
     each_cubemap_viewport([&](const ViewportPlan& viewport) {
-      const CubemapPlan one = make_cubemap(viewport.map, viewport.rect, size);
+      const CubemapPlan one = cropped(viewport, size);
       for (std::size_t i = 0; i < all.faces.size(); ++i) all.faces[i] = united(all.faces[i], one.faces[i]);
     });
     plan_.cubemap = all;
+  }
+
+  /// Mipmaps read far beyond what a pixel sees: the crops are then those of texels as large as the coarsest
+  /// level that is still to be right.
+  [[nodiscard]] CubemapPlan cropped(const ViewportPlan& viewport, int size) const {
+    if (!show_.quality.cubemap_mipmaps) return make_cubemap(viewport.map, viewport.rect, size);
+    const int coarse = std::max(1, size / coarsest_mip);
+    CubemapPlan plan = make_cubemap(viewport.map, viewport.rect, coarse);
+    plan.size = size;
+    for (CubeFace& face : plan.faces) {
+      const PixelRect& c = face.crop;
+      const int x = c.x * size / coarse, y = c.y * size / coarse;
+      const int right = ((c.x + c.width) * size + coarse - 1) / coarse;
+      const int bottom = ((c.y + c.height) * size + coarse - 1) / coarse;
+      face.crop = {x, y, right - x, bottom - y};
+    }
+    return plan;
   }
 
   static CubeFace united(const CubeFace& a, const CubeFace& b) {

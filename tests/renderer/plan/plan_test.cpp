@@ -1,6 +1,10 @@
 #include <algorithm>
+#include <cmath>
 #include <doctest/doctest.h>
+#include <filesystem>
+#include <random>
 
+#include "configs/loader/loader.h"
 #include "renderer/plan/plan.h"
 
 using namespace cupola;
@@ -184,6 +188,97 @@ TEST_CASE("the cubemap serves all its viewports: the finest size, all faces that
   REQUIRE(clamped);
   CHECK(clamped->plan.cubemap->size == 8192);
   CHECK(reported(clamped->warnings, Code::over_budget, "/quality/cubemap_size"));
+}
+
+TEST_CASE("mipmaps: crops leave room for texels 16 times as large") {
+  model::Show show = one_viewport(model::Perspective{{60}, {}}, Method::cubemap, 800, 800);
+  show.quality.cubemap_size = 1000;
+  const CubeFace sharp = make_plan(show)->plan.cubemap->faces[5];
+  show.quality.cubemap_mipmaps = true;
+  const CubemapPlan plan = *make_plan(show)->plan.cubemap;
+  CHECK(plan.size == 1000);
+  const CubeFace& soft = plan.faces[5];
+  CHECK(sharp.crop.x - soft.crop.x >= 32);
+  CHECK(soft.crop.x + soft.crop.width - sharp.crop.x - sharp.crop.width >= 32);
+  CHECK(soft.crop.x >= 0);
+  CHECK(soft.crop.x + soft.crop.width <= 1000);
+}
+
+TEST_CASE("the ready-made shows have a plan without a problem") {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(CUPOLA_SOURCE_DIR "/configs/shows")) {
+    if (entry.path().extension() != ".json") continue;
+    CAPTURE(entry.path().string());
+    const auto loaded = loader::load_show(entry.path());
+    REQUIRE(loaded);
+    const auto planned = make_plan(loaded->show);
+    REQUIRE(planned);
+    CHECK(planned->warnings.empty());
+    ++count;
+    if (entry.path().filename() == "dome-city.json") CHECK(planned->plan.cubemap->size == 768);
+  }
+  CHECK(count >= 2);
+}
+
+TEST_CASE("any show within the ranges has a plan or problems that say where") {
+  std::mt19937 random(11);
+  const auto pick = [&](std::initializer_list<double> values) {
+    return *(values.begin() + random() % values.size());
+  };
+  int planned_shows = 0;
+  for (int i = 0; i < 1500; ++i) {
+    model::Show show;
+    for (const char* name : {"a", "b"}) {
+      model::Projection& p = show.projections[name];
+      switch (random() % 4) {
+      case 0:
+        p.shape = model::Perspective{{pick({0.1, 60, 175})}, model::Angle{pick({0.1, 175})}};
+        break;
+      case 1:
+        p.shape = model::Cylinder{{pick({1, 200, 360})}, {pick({0.1, 60, 170})}};
+        break;
+      case 2:
+        p.shape = model::Fisheye{{pick({1, 180, 360})}};
+        break;
+      default:
+        p.shape = model::Equirectangular{{pick({1, 360})}, {pick({1, 180})}};
+        break;
+      }
+      p.zoom = pick({0.05, 0.7, 1, 1, 1, 100});
+      p.off_axis = {pick({-0.95, 0, 0.3}), pick({0, 0.95}), pick({0, 0, 0.5})};
+      p.orientation = {{pick({0, 45, -360})}, {pick({0, 90})}, {pick({0, 33})}};
+    }
+    model::Output& output = show.outputs["o"];
+    output.width = static_cast<int>(pick({1, 3, 40, 101}));
+    output.height = static_cast<int>(pick({1, 2, 33, 77}));
+    for (const char* name : {"v", "w"}) {
+      model::Viewport& v = output.viewports[name];
+      v.projection = std::string(1, random() % 2 ? 'a' : 'b');
+      v.method = random() % 3 ? Method::cubemap : Method::piecewise;
+      v.x = pick({0, 0.5, 0.99});
+      v.width = 1.0 - v.x;
+    }
+    show.quality.supersampling = static_cast<int>(pick({1, 2, 8}));
+    show.quality.cubemap_mipmaps = random() % 4 == 0;
+    if (random() % 2) show.quality.cubemap_size = static_cast<int>(pick({16, 100, 16384}));
+    show.pieces.max_error = pick({0.01, 0.25, 64});
+    const auto planned = make_plan(show);
+    if (!planned) {
+      REQUIRE_FALSE(planned.error().empty());
+      for (const auto& problem : planned.error()) REQUIRE(problem.pointer.rfind('/', 0) == 0);
+      continue;
+    }
+    ++planned_shows;
+    for (const ViewportPlan& v : planned->plan.outputs.at(0).viewports) {
+      REQUIRE(v.rect.width > 0);
+      REQUIRE(v.pieces.has_value() == (v.method == Method::piecewise));
+      if (!v.pieces) continue;
+      for (const Piece& piece : v.pieces->pieces)
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r) REQUIRE(std::isfinite(piece.to_screen[c][r]));
+    }
+  }
+  CHECK(planned_shows > 300);
 }
 
 TEST_CASE("a reference to no projection is a problem, not a crash") {
