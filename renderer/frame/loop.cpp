@@ -191,9 +191,9 @@ struct Loop::Impl {
     }
     ++frames;
     times.add(presented, presented - begin);
+    publish(drawn, presented); // before anybody hears of the frame and asks
     hooks.shown(drawn.revision, frames);
     snapshots.serve(renderer->pictures(), drawn.revision, frames);
-    publish(drawn, presented);
     pace(presented);
     return true;
   }

@@ -15,10 +15,14 @@
 #include <thread>
 #include <utility>
 
+#include "configs/loader/loader.h"
 #include "renderer/frame/loop.h"
 #include "renderer/outputs/context.h"
 #include "renderer/outputs/main_thread.h"
 #include "renderer/outputs/open.h"
+#include "server/control/http/server.h"
+#include "server/control/loop.h"
+#include "server/control/osc/server.h"
 #include "server/daemon/exit_code.h"
 #include "server/daemon/faults.h"
 #include "server/daemon/log.h"
@@ -113,11 +117,59 @@ frame::LoopHooks hooks_of(state::LiveState& live, Stages& stages, Faults& faults
   return hooks;
 }
 
+/// What the network sees of the frame loop.
+control::Services services_of(frame::Loop& loop, const Faults& faults) {
+  control::Services services;
+  services.version = CUPOLA_VERSION;
+  services.schema = loader::show_schema();
+  services.status = [&] { return status_json(loop.status(), faults.now()); };
+  services.snapshot = [&loop](const std::string& output,
+                              std::function<void(model::Result<control::RgbPicture>)> deliver) {
+    loop.snapshot(output, std::nullopt, [deliver](model::Result<frame::Snapshot> got) {
+      if (got)
+        deliver(control::RgbPicture{got->width, got->height, std::move(got->rgb)});
+      else
+        deliver(tl::unexpected(std::move(got.error())));
+    });
+  };
+  return services;
+}
+
+/// The doors that the show opens. Problems are logged; false when one could not be opened.
+struct Doors {
+  std::unique_ptr<control::HttpServer> http;
+  std::unique_ptr<control::OscServer> osc;
+
+  bool open(control::Loop& sockets, state::LiveState& live, control::Services services) {
+    const model::Control where = live.current()->show->control;
+    if (where.http.enabled) {
+      auto opened = control::HttpServer::open(sockets, live, where.http, std::move(services));
+      if (!opened) return refused(opened.error());
+      http = std::move(*opened);
+      spdlog::info("live page and control: http://{}:{}/", where.http.address, http->port());
+    }
+    if (where.osc.enabled) {
+      auto opened = control::OscServer::open(sockets, live, where.osc);
+      if (!opened) return refused(opened.error());
+      osc = std::move(*opened);
+      spdlog::info("control: osc.udp://{}:{}/", where.osc.address, osc->port());
+    }
+    return true;
+  }
+
+private:
+  static bool refused(const model::Problems& problems) {
+    log_problems(problems);
+    return false;
+  }
+};
+
 ExitCode run(const Options& options) {
   Signals signals;
   outputs::MainThread main;
   spdlog::info("cupolad {} with {}", CUPOLA_VERSION, options.config);
 
+  control::Loop sockets; // outlives whoever may still answer through it
   OutputTest output_test{main};
   auto loaded = load_unless_stopped(options, output_test, signals);
   if (!loaded) { // the loading thread still runs: nothing may be torn down under it
@@ -142,10 +194,12 @@ ExitCode run(const Options& options) {
   Stages stages(*live);
   Faults faults;
   Supervisor supervisor(options.config, *live, main, signals);
-  ExitCode exit_code = exit_done;
+  ExitCode exit_code = exit_start;
   {
     frame::Loop loop(**context, main, hooks_of(*live, stages, faults, supervisor));
-    exit_code = supervisor.serve(loop, (*context)->desktop());
+    Doors doors;
+    if (doors.open(sockets, *live, services_of(loop, faults)))
+      exit_code = supervisor.serve(loop, (*context)->desktop());
     service::stopping();
     Signals::end_within(stop_within_ms, exit_code);
   }
