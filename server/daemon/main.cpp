@@ -146,13 +146,12 @@ struct Doors {
       auto opened = control::HttpServer::open(sockets, live, where.http, std::move(services));
       if (!opened) return refused(opened.error());
       http = std::move(*opened);
-      spdlog::info("live page and control: http://{}:{}/", where.http.address, http->port());
+      spdlog::info("live pictures: http://{}:{}/", where.http.address, http->port());
     }
     if (where.osc.enabled) {
       auto opened = control::OscServer::open(sockets, live, where.osc);
       if (!opened) return refused(opened.error());
       osc = std::move(*opened);
-      spdlog::info("control: osc.udp://{}:{}/", where.osc.address, osc->port());
     }
     return true;
   }
