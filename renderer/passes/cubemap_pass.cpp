@@ -1,0 +1,101 @@
+#include "renderer/passes/cubemap_pass.h"
+
+#include <array>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+
+namespace cupola::passes {
+
+const glm::dmat3& cube_face_matrix(int face) {
+  // Rows: s, t and the face's axis in terms of view axes [OpenGL 4.5 core, table 8.19].
+  using glm::dvec3;
+  const auto rows = [](dvec3 s, dvec3 t, dvec3 axis) { return glm::transpose(glm::dmat3(s, t, axis)); };
+  static const std::array matrices{
+      rows({0, 0, -1}, {0, -1, 0}, {1, 0, 0}), rows({0, 0, 1}, {0, -1, 0}, {-1, 0, 0}),
+      rows({1, 0, 0}, {0, 0, 1}, {0, 1, 0}),   rows({1, 0, 0}, {0, 0, -1}, {0, -1, 0}),
+      rows({1, 0, 0}, {0, -1, 0}, {0, 0, 1}),  rows({-1, 0, 0}, {0, -1, 0}, {0, 0, -1}),
+  };
+  return matrices[static_cast<std::size_t>(face)];
+}
+
+bool layered_rendering_available() { return epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array"); }
+
+namespace {
+
+void clear_current(const glm::vec3& background) {
+  glClearColor(background.r, background.g, background.b, 1.0f);
+  glClearDepth(0.0);
+  glDepthMask(GL_TRUE);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+}
+
+DrawCounts draw_faces_layered(ScenePass& pass, const FrameScene& scene, const plan::CubemapPlan& plan,
+                              const CubemapTarget& target, const glm::vec3& background, float style_scale) {
+  std::array<glm::dmat3, 6> matrices;
+  std::vector<int> layers;
+  for (int face = 0; face < 6; ++face) {
+    const auto at = static_cast<std::size_t>(face);
+    matrices[at] = cube_face_matrix(face);
+    if (!plan.faces[at].seen) continue;
+    layers.push_back(face);
+    const plan::PixelRect& crop = plan.faces[at].crop;
+    const auto index = static_cast<GLuint>(face);
+    glViewportIndexedf(index, 0, 0, static_cast<float>(plan.size), static_cast<float>(plan.size));
+    glScissorIndexed(index, crop.x, crop.y, crop.width, crop.height);
+  }
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer(0));
+  glDisable(GL_SCISSOR_TEST);
+  clear_current(background);
+  glEnable(GL_SCISSOR_TEST);
+  const DrawCounts counts = pass.draw_layered(scene, matrices, layers, style_scale);
+  glDisable(GL_SCISSOR_TEST); // it would cut the resolving blits
+  for (const int face : layers) target.resolve(face);
+  return counts;
+}
+
+} // namespace
+
+DrawCounts draw_cubemap(ScenePass& pass, const FrameScene& scene, const plan::CubemapPlan& plan,
+                        const CubemapTarget& target, const glm::vec3& background, float style_scale) {
+  DrawCounts counts;
+  if (target.layered()) {
+    counts = draw_faces_layered(pass, scene, plan, target, background, style_scale);
+  } else {
+    for (int face = 0; face < 6; ++face) {
+      const plan::CubeFace& seen = plan.faces[static_cast<std::size_t>(face)];
+      if (!seen.seen) continue;
+      glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer(face));
+      glViewport(0, 0, plan.size, plan.size);
+      glEnable(GL_SCISSOR_TEST);
+      glScissor(seen.crop.x, seen.crop.y, seen.crop.width, seen.crop.height);
+      clear_current(background);
+      counts += pass.draw_direct(scene, cube_face_matrix(face), style_scale);
+      glDisable(GL_SCISSOR_TEST);
+      target.resolve(face);
+    }
+  }
+  glDisable(GL_SCISSOR_TEST);
+  target.finish();
+  return counts;
+}
+
+void draw_lookup(GLuint program, GLuint empty_array, const projection::Map& map,
+                 const CubemapTarget& cubemap) {
+  using projection::MapUniforms;
+  const MapUniforms values = projection::uniforms(map);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glUseProgram(program);
+  glUniform1i(MapUniforms::location_shape, values.shape);
+  glUniform4fv(MapUniforms::location_parameters, 1, glm::value_ptr(values.parameters));
+  glUniform1f(MapUniforms::location_zoom, values.zoom);
+  glUniform3fv(MapUniforms::location_off_axis, 1, glm::value_ptr(values.off_axis));
+  glUniformMatrix3fv(MapUniforms::location_orientation, 1, GL_FALSE, glm::value_ptr(values.orientation));
+  glBindTextureUnit(0, cubemap.texture());
+  glBindSampler(0, 0);
+  glBindVertexArray(empty_array);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+} // namespace cupola::passes

@@ -1,0 +1,29 @@
+// The image-based method: the scene into the faces of a cubemap, then a lookup for each pixel of a viewport.
+// Render thread only.
+#pragma once
+
+#include "renderer/passes/scene_pass.h"
+#include "renderer/passes/targets.h"
+#include "renderer/plan/plan.h"
+#include "renderer/projection/map.h"
+
+namespace cupola::passes {
+
+/// View axes to face coordinates: (s·w, t·w, w) with w the distance along the face's axis, as GL's table of
+/// cubemap faces has them. Faces are mirrored against a perspective view.
+[[nodiscard]] const glm::dmat3& cube_face_matrix(int face);
+
+/// True when the driver lets a vertex shader choose the layer: faces in a single pass are possible.
+[[nodiscard]] bool layered_rendering_available();
+
+/// Draws the faces that are seen, each cropped to what is seen of it. `style_scale`: face pixels per output
+/// pixel.
+DrawCounts draw_cubemap(ScenePass& pass, const FrameScene& scene, const plan::CubemapPlan& plan,
+                        const CubemapTarget& target, const glm::vec3& background, float style_scale);
+
+/// Looks every pixel of the current GL viewport up. `program`: fullscreen.vert + lookup.frag. Pixels that the
+/// projection does not show stay as they are.
+void draw_lookup(GLuint program, GLuint empty_array, const projection::Map& map,
+                 const CubemapTarget& cubemap);
+
+} // namespace cupola::passes

@@ -1,0 +1,75 @@
+// The CPU engine: triangles are distributed to the strips they touch, clipped to them and projected, on all
+// cores; what comes out is drawn as it is. Pure, no GL.
+//
+// Every cut is computed from the scene's own edge with its ends in canonical order, so two triangles that
+// share an edge, and two strips that share a border, get the same bits: no holes, no overlap.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <vector>
+
+#include "renderer/content/scene.h"
+#include "renderer/passes/draw_list.h"
+#include "renderer/passes/strip_range.h"
+#include "renderer/plan/camera.h"
+#include "renderer/plan/plan.h"
+
+namespace cupola::passes {
+
+/// 52 bytes, as the EMITTED vertex program reads it.
+struct EmittedVertex {
+  glm::vec4 clip;       ///< final clip-space position, z = near
+  glm::vec3 offset;     ///< from the eye, world axes, metres
+  std::uint32_t normal; ///< 2_10_10_10_REV, signed normalised
+  glm::vec2 uv;
+  std::uint32_t color;
+  glm::vec2 corner; ///< barycentric coordinates of corners 0 and 1 in the scene's triangle
+};
+
+/// What one task produced. Indices count from the task's own first vertex.
+struct EmittedBatch {
+  std::vector<EmittedVertex> vertices;
+  std::vector<std::uint32_t> indices;
+  std::vector<Run> runs; ///< in drawing order; first_index within `indices`
+  std::uint64_t pairs = 0;
+};
+
+struct StripView {
+  const plan::PieceSet& set;
+  const StripAzimuths& azimuths;
+  glm::vec3 eye;
+  glm::mat3 view_from_world;
+  float near;
+  bool edges; ///< corners must keep their own barycentric coordinates (wireframe): nothing is shared
+};
+
+/// Geometry as it is this frame: moving vertices come from the pose, blended triangles stand in today's
+/// order.
+struct FrameGeometry {
+  std::span<const content::Vertex> still;  ///< vertices [0, still.size())
+  std::span<const content::Vertex> moving; ///< vertices from still.size() on
+  std::span<const std::uint32_t> indices;  ///< the scene's
+  struct {
+    std::span<const std::uint32_t> indices; ///< replace the scene's from `first` on
+    std::uint32_t first = 0;
+  } blended;
+  std::span<const content::Material> materials;
+  [[nodiscard]] const content::Vertex& vertex(std::uint32_t index) const {
+    return index < still.size() ? still[index] : moving[index - still.size()];
+  }
+  [[nodiscard]] std::uint32_t index(std::uint32_t at) const {
+    return blended.indices.empty() || at < blended.first ? indices[at] : blended.indices[at - blended.first];
+  }
+};
+
+/// Distributes everything in the list; batches stand in drawing order and reuse their memory.
+void distribute_strips(const FrameGeometry& geometry, std::span<const DrawItem> items, const StripView& view,
+                       std::vector<EmittedBatch>& batches);
+
+} // namespace cupola::passes

@@ -1,0 +1,29 @@
+// The scene's programs, one per combination of vertex path, style and material features; built when first
+// wanted. Render thread only.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+#include "configs/model/problem.h"
+#include "configs/model/show.h"
+#include "renderer/gl/handle.h"
+
+namespace cupola::passes {
+
+/// How vertices reach the screen; see scene.vert.glsl.
+enum class VertexPath : std::uint8_t { direct, layered, emitted, replicated };
+
+class ScenePrograms {
+public:
+  /// `features`: MaterialFeature bits; `lights`: the scene has punctual lights.
+  /// Fails only when the driver refuses a shader; the problem is kept and given once by take_problems().
+  [[nodiscard]] GLuint get(VertexPath path, model::StyleKind style, bool lights, std::uint32_t features);
+  [[nodiscard]] model::Problems take_problems();
+
+private:
+  std::unordered_map<std::uint32_t, gl::Program> programs_;
+  model::Problems problems_;
+};
+
+} // namespace cupola::passes
