@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,10 +39,16 @@ struct FrameStatistics {
   bool uploading = false;         ///< a newer stage is being realised beside this one
 };
 
+struct RendererOptions {
+  bool offline =
+      false; ///< every draw is complete: waits for uploads and for pictures of the reference method
+  std::function<void(double share)> progress; ///< of a reference picture while off-line; any thread
+};
+
 class Renderer {
 public:
   /// Fails when the current context is not OpenGL 4.5 core or a shader does not compile.
-  [[nodiscard]] static model::Result<std::unique_ptr<Renderer>> make();
+  [[nodiscard]] static model::Result<std::unique_ptr<Renderer>> make(RendererOptions options = {});
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

@@ -1,0 +1,36 @@
+// A viewport rendered by rays on the CPU while the show runs: a thread of its own traces, and the viewport
+// shows the newest picture that is finished. Render thread only, but for what the thread does inside.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "renderer/frame/stage.h"
+#include "renderer/gl/handle.h"
+#include "renderer/plan/camera.h"
+
+namespace cupola::frame {
+
+class ReferenceView {
+public:
+  ReferenceView();
+  ~ReferenceView(); ///< stops a picture in the making
+  ReferenceView(const ReferenceView&) = delete;
+  ReferenceView& operator=(const ReferenceView&) = delete;
+
+  /// Starts the next picture if none is in the making.
+  void request(std::shared_ptr<const Stage> stage, const plan::ViewportPlan& viewport,
+               const plan::CameraPose& camera, double time);
+  /// Off-line: each request is waited for, so that the picture is that of the frame.
+  void wait();
+  /// Share of the picture in the making that is done, 0 to 1; any thread. Set before the first request.
+  void set_progress(std::function<void(double)> progress);
+  /// The newest picture as a texture, GL's row 0 at the bottom; 0 while there is none.
+  [[nodiscard]] GLuint texture();
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace cupola::frame

@@ -1,0 +1,310 @@
+#include "renderer/frame/renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/matrix.hpp>
+#include <map>
+#include <optional>
+
+#include "renderer/frame/realised.h"
+#include "renderer/frame/reference_view.h"
+#include "renderer/gl/shader.h"
+#include "renderer/passes/cubemap_pass.h"
+#include "renderer/passes/frame_block.h"
+#include "renderer/passes/gpu_strips.h"
+#include "renderer/passes/scene_pass.h"
+#include "renderer/plan/camera.h"
+
+namespace cupola::frame {
+
+namespace {
+
+constexpr std::size_t upload_bytes_per_frame = 8u << 20;
+
+Device query_device() {
+  Device device;
+  const auto text = [](GLenum name) {
+    const GLubyte* words = glGetString(name);
+    return words ? std::string(reinterpret_cast<const char*>(words)) : std::string();
+  };
+  device.name = text(GL_RENDERER);
+  device.version = text(GL_VERSION);
+  for (const char* software : {"llvmpipe", "softpipe", "SWR"})
+    if (device.name.find(software) != std::string::npos) device.software = true;
+  device.max_samples = passes::clamp_samples(64);
+  GLfloat anisotropy = 1.0f;
+  if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic") ||
+      epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic"))
+    glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &anisotropy);
+  device.max_anisotropy = static_cast<int>(anisotropy);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &device.max_texture);
+  return device;
+}
+
+/// The programs that do not depend on the scene.
+struct FixedPrograms {
+  gl::Program lookup, downsample, picture;
+};
+
+model::Result<FixedPrograms> build_fixed() {
+  const gl::Stage fullscreen{GL_VERTEX_SHADER, "renderer/passes/fullscreen.vert.glsl"};
+  auto lookup = gl::build_program(
+      {"lookup", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/lookup.frag.glsl"}}, {}});
+  auto downsample = gl::build_program(
+      {"downsample", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/downsample.frag.glsl"}}, {}});
+  auto picture = gl::build_program(
+      {"picture", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/picture.frag.glsl"}}, {}});
+  model::Problems problems;
+  for (const auto* result : {&lookup, &downsample, &picture})
+    if (!*result) problems.insert(problems.end(), result->error().begin(), result->error().end());
+  if (!problems.empty()) return tl::unexpected(problems);
+  return FixedPrograms{std::move(*lookup), std::move(*downsample), std::move(*picture)};
+}
+
+} // namespace
+
+struct Renderer::Impl {
+  RendererOptions options;
+  Device device = query_device();
+  FixedPrograms fixed;
+  passes::ScenePrograms programs;
+  passes::ScenePass pass{programs};
+  std::map<std::string, passes::GpuStrips> gpu_strips; ///< by output/viewport: each keeps its own list
+  std::map<std::string, ReferenceView> references;
+  gl::VertexArray empty_array = gl::VertexArray::make();
+  gl::Buffer frame_block = gl::Buffer::make();
+  std::optional<Realised> current, next;
+  std::shared_ptr<const Stage> waiting;
+  model::Problems problems;
+  std::vector<Picture> pictures;
+  content::Pose pose;
+  passes::DrawList list;
+
+  void take_waiting();
+  void upload();
+  passes::FrameScene pose_scene(const plan::CameraPose& camera, double time);
+  passes::DrawCounts draw_output(const plan::OutputPlan& output, const passes::FrameScene& scene,
+                                 const plan::CameraPose& camera, double time);
+  passes::DrawCounts draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
+                                 const passes::FrameScene& scene, float scale);
+  void draw_reference(const std::string& key, const plan::ViewportPlan& viewport,
+                      const plan::CameraPose& camera, double time);
+};
+
+Renderer::Renderer(std::unique_ptr<Impl> impl)
+    : impl_(std::move(impl)) {}
+Renderer::~Renderer() = default;
+
+model::Result<std::unique_ptr<Renderer>> Renderer::make(RendererOptions options) {
+  if (epoxy_gl_version() < 45)
+    return model::failure(
+        {model::Code::gl_unavailable,
+         "",
+         "an OpenGL 4.5 core context",
+         std::to_string(epoxy_gl_version() / 10) + '.' + std::to_string(epoxy_gl_version() % 10),
+         "Use a newer driver.",
+         {},
+         {}});
+  model::Result<FixedPrograms> fixed = build_fixed();
+  if (!fixed) return tl::unexpected(fixed.error());
+  auto impl = std::make_unique<Impl>();
+  impl->fixed = std::move(*fixed);
+  impl->options = std::move(options);
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
+}
+
+const Device& Renderer::device() const { return impl_->device; }
+const std::vector<Picture>& Renderer::pictures() const { return impl_->pictures; }
+model::Problems Renderer::take_problems() { return std::exchange(impl_->problems, {}); }
+
+void Renderer::set_stage(std::shared_ptr<const Stage> stage) {
+  const auto is = [&stage](const std::optional<Realised>& realised) {
+    return realised && realised->stage == stage;
+  };
+  if (!stage || impl_->waiting == stage || is(impl_->next)) return;
+  if (is(impl_->current) && !impl_->next && !impl_->waiting) return;
+  impl_->waiting = std::move(stage);
+}
+
+/// A stage in the making that has the newest scene goes on with its upload under newer plain values; one
+/// whose scene is out of date is dropped.
+void Renderer::Impl::take_waiting() {
+  if (!waiting) return;
+  const Realised* before = current ? &*current : nullptr;
+  if (next && next->stage->scene == waiting->scene) before = &*next;
+  model::Result<Realised> made = realise(std::exchange(waiting, nullptr), before, device);
+  if (!made) {
+    problems.insert(problems.end(), made.error().begin(), made.error().end());
+    return;
+  }
+  next = std::move(*made);
+}
+
+void Renderer::Impl::upload() {
+  if (!next) return;
+  if (!next->scene_ready) {
+    if (!current || options.offline) {
+      while (!next->scene->upload(upload_bytes_per_frame)) {}
+      next->scene_ready = true;
+    } else {
+      next->scene_ready = next->scene->upload(upload_bytes_per_frame);
+    }
+  }
+  if (!next->scene_ready) return;
+  current = std::move(*next);
+  next.reset();
+}
+
+passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, double time) {
+  const content::Scene& scene = current->scene->scene();
+  const model::Show& show = *current->stage->show;
+  if (scene.rig) {
+    content::pose(scene, time, pose);
+    current->scene->set_moving_vertices(pose.vertices);
+  } else {
+    pose.vertices.clear();
+  }
+  const auto& lights = scene.rig ? pose.lights : scene.lights;
+  const std::span<const content::Cluster> clusters(scene.rig ? pose.clusters : scene.geometry.clusters);
+  const glm::vec3 eye(camera.position);
+  passes::order_for_eye(scene, clusters, pose.vertices, eye, list);
+  if (!list.blended_indices.empty()) current->scene->set_indices(list.blended_first, list.blended_indices);
+
+  const passes::FrameBlock block = passes::make_frame_block(show, camera, lights);
+  glNamedBufferData(frame_block.id(), sizeof block, &block, GL_STREAM_DRAW);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block.id());
+
+  const std::span<const content::Vertex> vertices(scene.geometry.vertices);
+  const passes::FrameGeometry geometry{scene.rig ? vertices.first(scene.static_vertices) : vertices,
+                                       pose.vertices,
+                                       scene.geometry.indices,
+                                       {list.blended_indices, list.blended_first},
+                                       scene.materials};
+  return {*current->scene,
+          list,
+          geometry,
+          eye,
+          glm::mat3(glm::transpose(camera.orientation)),
+          static_cast<float>(show.camera.near),
+          show.scene.style.kind,
+          !lights.empty()};
+}
+
+passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
+                                               const passes::FrameScene& scene, float scale) {
+  const plan::PieceSet& set = *viewport.pieces;
+  if (set.pieces.size() == 1 && set.pieces.front().plane_count == 0) {
+    passes::DrawCounts counts = pass.draw_direct(scene, set.pieces.front().to_screen, scale);
+    counts.pairs = counts.triangles;
+    return counts;
+  }
+  const model::Pieces& settings = current->stage->show->pieces;
+  const passes::StripAzimuths azimuths(set, viewport.map.orientation);
+  const auto ceiling = static_cast<std::uint64_t>(settings.max_replicated);
+  const bool on_gpu = settings.engine == model::Engine::gpu ||
+                      (settings.engine == model::Engine::automatic && !device.software);
+  if (!on_gpu) return pass.draw_strips_cpu(scene, set, azimuths, ceiling, scale);
+  auto engine = gpu_strips.find(key);
+  if (engine == gpu_strips.end()) {
+    model::Result<passes::GpuStrips> made = passes::GpuStrips::make();
+    if (!made) {
+      problems.insert(problems.end(), made.error().begin(), made.error().end());
+      return pass.draw_strips_cpu(scene, set, azimuths, ceiling, scale);
+    }
+    engine = gpu_strips.emplace(key, std::move(*made)).first;
+  }
+  return engine->second.draw(pass, scene, set, azimuths, ceiling, scale);
+}
+
+void Renderer::Impl::draw_reference(const std::string& key, const plan::ViewportPlan& viewport,
+                                    const plan::CameraPose& camera, double time) {
+  ReferenceView& view = references[key];
+  view.set_progress(options.progress);
+  view.request(current->stage, viewport, camera, time);
+  if (options.offline) view.wait();
+  const GLuint texture = view.texture();
+  if (texture == 0) return;
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glUseProgram(fixed.picture.id());
+  glBindTextureUnit(0, texture);
+  glBindSampler(0, 0);
+  glBindVertexArray(empty_array.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
+                                               const passes::FrameScene& scene,
+                                               const plan::CameraPose& camera, double time) {
+  const passes::OutputTarget& target = *current->outputs.at(output.name);
+  const glm::vec3 background(current->stage->show->background);
+  const int scale = target.scale();
+  const auto style_scale = static_cast<float>(scale);
+  passes::DrawCounts counts;
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer());
+  glDisable(GL_SCISSOR_TEST);
+  glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+  glClear(GL_COLOR_BUFFER_BIT);
+  for (const plan::ViewportPlan& viewport : output.viewports) {
+    const plan::PixelRect& r = viewport.rect;
+    const std::array rect{r.x * scale, (output.height - r.y - r.height) * scale, r.width * scale,
+                          r.height * scale};
+    const std::string key = output.name + '/' + viewport.name;
+    glViewport(rect[0], rect[1], rect[2], rect[3]);
+    glScissor(rect[0], rect[1], rect[2], rect[3]);
+    glEnable(GL_SCISSOR_TEST);
+    switch (viewport.method) {
+    case model::Method::piecewise:
+      passes::set_scene_state();
+      glClearColor(background.r, background.g, background.b, 1.0f);
+      glClearDepth(0.0);
+      glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+      counts += draw_pieces(key, viewport, scene, style_scale);
+      break;
+    case model::Method::cubemap:
+      passes::draw_lookup(fixed.lookup.id(), empty_array.id(), viewport.map, *current->cubemap);
+      break;
+    case model::Method::reference:
+      draw_reference(key, viewport, camera, time);
+      break;
+    }
+    glDisable(GL_SCISSOR_TEST);
+  }
+  target.finish(fixed.downsample.id(), empty_array.id());
+  pictures.push_back({output.name, target.picture(), target.width(), target.height()});
+  return counts;
+}
+
+FrameStatistics Renderer::draw(double time) {
+  impl_->take_waiting();
+  impl_->upload();
+  FrameStatistics statistics;
+  if (!impl_->current) return statistics;
+  const Realised& current = *impl_->current;
+  const model::Show& show = *current.stage->show;
+  const plan::CameraPose camera = plan::camera_at(show.camera, time);
+
+  passes::set_scene_state();
+  const passes::FrameScene scene = impl_->pose_scene(camera, time);
+  passes::DrawCounts counts;
+  if (current.cubemap)
+    counts += passes::draw_cubemap(impl_->pass, scene, *current.stage->plan->cubemap, *current.cubemap,
+                                   glm::vec3(show.background), current.cubemap_style_scale);
+  impl_->pictures.clear();
+  for (const plan::OutputPlan& output : current.stage->plan->outputs)
+    counts += impl_->draw_output(output, scene, camera, time);
+  model::Problems shader_problems = impl_->programs.take_problems();
+  impl_->problems.insert(impl_->problems.end(), shader_problems.begin(), shader_problems.end());
+
+  statistics.revision = current.stage->revision;
+  statistics.triangles = current.scene->scene().geometry.indices.size() / 3;
+  statistics.drawn = counts.triangles;
+  statistics.replicated = counts.pairs;
+  statistics.vertex_bytes = current.scene->bytes() + counts.bytes;
+  statistics.uploading = impl_->next.has_value();
+  return statistics;
+}
+
+} // namespace cupola::frame
