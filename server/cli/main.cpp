@@ -1,7 +1,5 @@
 // cupola: everything that is done from a terminal.
 #include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 
 #include "server/cli/commands.h"
 
@@ -14,6 +12,8 @@ int main(int argc, char** argv) {
 
   add_validate(app, exit_code);
   add_compare(app, exit_code);
+  add_render(app, exit_code);
+  add_bench(app, exit_code);
   add_schema(app, exit_code);
   add_docs(app, exit_code);
 

@@ -1,0 +1,23 @@
+// What every benchmark prints: a table for people, or one JSON object with `device`, `rows` and `ratios`.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace cupola::cli {
+
+struct BenchReport {
+  std::string device;
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array(); ///< objects with the same keys
+  nlohmann::ordered_json ratios = nlohmann::ordered_json::object();
+  std::vector<std::string> notes;
+};
+
+void print_report(const BenchReport& report, bool as_json);
+
+/// Table 1 of Lorenz & Döllner (2009): plain perspective, cubemap and piecewise on the 360° cylinder, in one
+/// process. Returns an exit code.
+int bench_table1(bool as_json, bool quick);
+
+} // namespace cupola::cli

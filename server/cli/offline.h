@@ -1,0 +1,37 @@
+// Shows without a daemon: loaded, planned and drawn in this process, without a window.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "configs/model/problem.h"
+#include "configs/model/show.h"
+#include "renderer/frame/renderer.h"
+#include "renderer/outputs/context.h"
+#include "renderer/outputs/image_file.h"
+
+namespace cupola::cli {
+
+/// A renderer on a headless context. The context outlives the renderer.
+struct OfflineRenderer {
+  std::unique_ptr<outputs::Context> context;
+  std::unique_ptr<frame::Renderer> renderer;
+};
+
+/// `progress`: share of a reference picture that is done, from any thread.
+[[nodiscard]] model::Result<OfflineRenderer> make_offline_renderer(std::function<void(double)> progress = {});
+
+/// Plans the show and loads its scene, or takes `scene` over. `folder`: of relative paths in the show.
+[[nodiscard]] model::Result<std::shared_ptr<const frame::Stage>>
+make_stage(const model::Show& show, const std::filesystem::path& folder,
+           std::shared_ptr<const content::Scene> scene = nullptr);
+
+/// The picture as bytes, rows from the top. With the context current.
+[[nodiscard]] outputs::ByteImage read_picture(const frame::Picture& picture);
+
+/// Prints problems to standard error.
+void print_problems(const model::Problems& problems);
+
+} // namespace cupola::cli

@@ -1,0 +1,201 @@
+// cupola render: pictures of a show, off-line.
+#include <CLI/App.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "configs/loader/loader.h"
+#include "server/cli/commands.h"
+#include "server/cli/offline.h"
+
+namespace cupola::cli {
+
+namespace {
+
+constexpr int reference_samples = 64; // a pixel, unless told otherwise
+
+struct Options {
+  std::string show, output, method, frames, size, cubemap_size, target;
+  int samples = 0;
+  bool quiet = false;
+};
+
+struct FrameRange {
+  long first = 0, last = 0;
+  bool given = false;
+};
+
+bool parse_pair(const std::string& text, const std::string& between, long& a, long& b) {
+  const std::size_t at = text.find(between);
+  if (at == std::string::npos) return false;
+  try {
+    std::size_t end_a = 0, end_b = 0;
+    const std::string second = text.substr(at + between.size());
+    a = std::stol(text.substr(0, at), &end_a);
+    b = std::stol(second, &end_b);
+    return end_a == at && end_b == second.size();
+  } catch (const std::exception&) { return false; }
+}
+
+model::Problem bad(const char* option, const char* expected, const std::string& found) {
+  return {model::Code::bad_request, "", std::string(option) + ' ' + expected, found, "", {}, {}};
+}
+
+/// Puts the options into the show, so that planning sees them as if they stood in the file.
+model::Problems apply(const Options& options, model::Show& show) {
+  model::Problems problems;
+  long width = 0, height = 0;
+  const bool resized = !options.size.empty();
+  if (resized && (!parse_pair(options.size, "x", width, height) || width < 1 || height < 1 || width > 16384 ||
+                  height > 16384))
+    problems.push_back(bad("--size", "as WIDTHxHEIGHT, 1x1 to 16384x16384", options.size));
+  if (!options.output.empty()) {
+    if (!show.outputs.contains(options.output)) {
+      std::vector<std::string> names;
+      for (const auto& [name, output] : show.outputs) names.push_back(name);
+      const std::string near = model::nearest(options.output, names);
+      problems.push_back({model::Code::unknown_reference,
+                          "/outputs",
+                          "an output of the show",
+                          options.output,
+                          near.empty() ? "" : "Did you mean '" + near + "'?",
+                          {},
+                          {}});
+      return problems;
+    }
+    std::erase_if(show.outputs, [&](const auto& entry) { return entry.first != options.output; });
+  }
+  for (auto& [name, output] : show.outputs) {
+    if (resized && problems.empty()) {
+      output.width = static_cast<int>(width);
+      output.height = static_cast<int>(height);
+    }
+    if (options.method.empty()) continue;
+    for (auto& [viewport_name, viewport] : output.viewports)
+      viewport.method = options.method == "piecewise" ? model::Method::piecewise
+                        : options.method == "cubemap" ? model::Method::cubemap
+                                                      : model::Method::reference;
+  }
+  if (options.cubemap_size == "auto") {
+    show.quality.cubemap_size.reset();
+  } else if (!options.cubemap_size.empty()) {
+    try {
+      const int size = std::stoi(options.cubemap_size);
+      if (size < 16 || size > 16384) throw std::out_of_range("size");
+      show.quality.cubemap_size = size;
+    } catch (const std::exception&) {
+      problems.push_back(bad("--cubemap-size", "from 16 to 16384, or auto", options.cubemap_size));
+    }
+  }
+  const bool traced = options.method == "reference";
+  if (options.samples > 0)
+    show.quality.samples = options.samples;
+  else if (traced)
+    show.quality.samples = reference_samples;
+  return problems;
+}
+
+model::Result<FrameRange> parse_frames(const std::string& text) {
+  FrameRange range;
+  if (text.empty()) return range;
+  range.given = true;
+  if (!parse_pair(text, "..", range.first, range.last) || range.first < 0 || range.last < range.first)
+    return model::failure(bad("--frames", "as FIRST..LAST, counted from 0", text));
+  return range;
+}
+
+/// One picture goes to the file named; several go into a folder, numbered and named by output.
+std::filesystem::path file_of(const Options& options, const FrameRange& range, bool several_outputs,
+                              const std::string& output, long frame) {
+  const std::filesystem::path target(options.target);
+  if (!range.given && !several_outputs && target.has_extension()) return target;
+  char number[32];
+  std::snprintf(number, sizeof number, "_%06ld", frame);
+  return target / (output + (range.given ? number : "") + ".png");
+}
+
+ExitCode run(const Options& options) {
+  auto loaded = loader::load_show(options.show);
+  if (!loaded) {
+    print_problems(loaded.error());
+    return exit_unusable;
+  }
+  model::Problems problems = apply(options, loaded->show);
+  auto range = parse_frames(options.frames);
+  if (!range) problems.insert(problems.end(), range.error().begin(), range.error().end());
+  if (!problems.empty()) {
+    print_problems(problems);
+    return exit_unusable;
+  }
+  const bool several = loaded->show.outputs.size() > 1;
+  const bool folder = range->given || several || !std::filesystem::path(options.target).has_extension();
+  std::error_code error;
+  if (folder) std::filesystem::create_directories(options.target, error);
+
+  auto stage = make_stage(loaded->show, std::filesystem::path(options.show).parent_path());
+  if (!stage) {
+    loader::locate(stage.error(), loaded->positions);
+    print_problems(stage.error());
+    return exit_no;
+  }
+  const auto progress = [&options](double share) {
+    if (!options.quiet)
+      std::fprintf(stderr, "\rreference %3.0f %%%s", share * 100.0, share >= 1.0 ? "\n" : "");
+  };
+  auto offline = make_offline_renderer(progress);
+  if (!offline) {
+    print_problems(offline.error());
+    return exit_unusable;
+  }
+  frame::Renderer& renderer = *offline->renderer;
+  renderer.set_stage(*stage);
+  for (long frame = range->first; frame <= range->last; ++frame) {
+    renderer.draw(static_cast<double>(frame) / loaded->show.frame_rate);
+    if (model::Problems failed = renderer.take_problems(); !failed.empty()) {
+      print_problems(failed);
+      return exit_no;
+    }
+    for (const frame::Picture& picture : renderer.pictures()) {
+      const outputs::ByteImage image = read_picture(picture);
+      outputs::ByteView pixels = outputs::view(image);
+      pixels.alpha = false;
+      const auto file = file_of(options, *range, several, picture.output, frame);
+      if (auto written = outputs::write_image(file, pixels); !written) {
+        print_problems(written.error());
+        return exit_no;
+      }
+      if (!options.quiet) std::fprintf(stderr, "%s\n", file.c_str());
+    }
+    if (range->given && !options.quiet)
+      std::fprintf(stderr, "frame %ld of %ld..%ld\n", frame, range->first, range->last);
+  }
+  return exit_done;
+}
+
+} // namespace
+
+void add_render(CLI::App& app, ExitCode& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("render", "Renders pictures of a show without a daemon.");
+  command->add_option("show", options->show, "Show file")->required()->type_name("FILE");
+  command->add_option("-o,--to", options->target, "Picture (png, jpg, exr, tif), or folder for several")
+      ->required()
+      ->type_name("FILE|DIR");
+  command->add_option("--output", options->output, "Only this output of the show")->type_name("NAME");
+  command->add_option("--method", options->method, "For all viewports, instead of the show's own")
+      ->check(CLI::IsMember({"piecewise", "cubemap", "reference"}));
+  command->add_option("--frames", options->frames, "First and last frame, counted from 0")->type_name("A..B");
+  command->add_option("--size", options->size, "Pixels of the picture")->type_name("WxH");
+  command->add_option("--cubemap-size", options->cubemap_size, "Edge of a cubemap face in pixels, or auto")
+      ->type_name("N");
+  command->add_option("--samples", options->samples, "Samples a pixel (the reference's are 64 unless told)")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command->add_flag("--quiet", options->quiet, "Prints nothing but problems");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+} // namespace cupola::cli
