@@ -1,0 +1,82 @@
+// Inside a closed room no view may show the background, whatever the method: a single pixel would be a hole.
+#include <doctest/doctest.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/drawing.h"
+
+using namespace cupola;
+using namespace cupola::tests;
+
+namespace {
+
+struct Way {
+  std::string name;
+  model::Shape shape;
+  model::Method method;
+  model::Engine engine;
+  int samples;
+  bool single_pass;
+};
+
+std::vector<Way> ways() {
+  const model::Cylinder round{{360.0}, {134.0}}, part{{220.0}, {100.0}};
+  const model::Perspective flat{{90.0}, std::nullopt};
+  const model::Equirectangular whole{{360.0}, {180.0}};
+  using enum model::Method;
+  return {{"cylinder 360, cpu", round, piecewise, model::Engine::cpu, 1, false},
+          {"cylinder 360, gpu", round, piecewise, model::Engine::gpu, 1, false},
+          {"cylinder 360, cpu, multisampled", round, piecewise, model::Engine::cpu, 4, false},
+          {"cylinder 360, gpu, multisampled", round, piecewise, model::Engine::gpu, 4, false},
+          {"cylinder 220, cpu", part, piecewise, model::Engine::cpu, 1, false},
+          {"cylinder 220, gpu", part, piecewise, model::Engine::gpu, 1, false},
+          {"perspective", flat, piecewise, model::Engine::automatic, 1, false},
+          {"cylinder 360, cubemap", round, cubemap, model::Engine::automatic, 1, false},
+          {"equirectangular, cubemap", whole, cubemap, model::Engine::automatic, 1, false},
+          {"equirectangular, cubemap, single pass", whole, cubemap, model::Engine::automatic, 1, true},
+          {"equirectangular, cubemap, multisampled", whole, cubemap, model::Engine::automatic, 4, false}};
+}
+
+/// Pixels that have some of the background in them: magenta, which no wall of the room has a trace of.
+long tainted(const Shot& shot) {
+  long count = 0;
+  for (std::size_t i = 0; i + 3 < shot.rgba.size(); i += 4)
+    if (shot.rgba[i] > 120 && shot.rgba[i + 2] > 120 && shot.rgba[i + 1] < 90) ++count;
+  return count;
+}
+
+} // namespace
+
+TEST_CASE("no background pixel in a hundred views from inside a closed room") {
+  for (const Way& way : ways()) {
+    CAPTURE(way.name);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    long holes = 0;
+    for (int view = 0; view < 100; ++view) {
+      model::Projection projection;
+      projection.shape = way.shape;
+      model::Show show = make_show(model::Room{}, projection, way.method, 320, 240);
+      show.background = {1.0, 0.0, 1.0};
+      show.pieces.engine = way.engine;
+      show.quality.samples = way.samples;
+      show.quality.cubemap_single_pass = way.single_pass;
+      if (way.method == model::Method::cubemap) show.quality.cubemap_size = 128;
+      show.camera.position = {4.5 * unit(random), 4.5 * unit(random), 4.5 * unit(random)};
+      show.camera.orientation = {{180.0 * unit(random)}, {90.0 * unit(random)}, {180.0 * unit(random)}};
+      holes += tainted(draw(show));
+    }
+    CHECK(holes == 0);
+  }
+}
+
+TEST_CASE("the test can see a hole") {
+  model::Projection projection;
+  projection.shape = model::Cylinder{{360.0}, {134.0}};
+  model::Show show = make_show(model::Room{}, projection, model::Method::piecewise, 320, 240);
+  show.background = {1.0, 0.0, 1.0};
+  show.camera.position = {0.0, 0.0, 20.0}; // outside: only backs of walls, so all is background
+  CHECK(tainted(draw(show)) == 320 * 240);
+}
