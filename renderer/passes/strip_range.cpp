@@ -37,6 +37,10 @@ StripAzimuths::StripAzimuths(const plan::PieceSet& set, const glm::dmat3& axes)
   };
   for (const plan::Piece& piece : set.pieces) push(piece.planes[0]);
   push(-set.pieces.back().planes[1]);
+  // atan2 may give the left border of a full turn as +π: the field is then turned to lie around azimuth 0.
+  const float middle = (borders_.front() + borders_.back()) / 2.0f;
+  const float turns = std::round(middle / turn) * turn;
+  for (float& border : borders_) border -= turns;
   full_turn_ = borders_.back() - borders_.front() > turn - 1e-4f;
 }
 
