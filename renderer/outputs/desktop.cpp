@@ -1,5 +1,7 @@
 #include "renderer/outputs/desktop.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <utility>
@@ -37,6 +39,21 @@ bool all_digits(const std::string& text) {
 }
 
 } // namespace
+
+void Desktop::when_lost(void (*end)()) {
+  // GLFW has loaded the library; its headers would be a dependency for one function.
+  static void (*ends)() = nullptr;
+  ends = end;
+  using Handler = int (*)(void*);
+  if (void* library = dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD)) {
+    if (auto* set = reinterpret_cast<Handler (*)(Handler)>(dlsym(library, "XSetIOErrorHandler")))
+      set([](void*) {
+        ends();
+        return 0;
+      });
+    dlclose(library);
+  }
+}
 
 Desktop::Desktop(Messages messages)
     : messages_(std::move(messages)) {}

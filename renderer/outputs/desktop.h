@@ -40,6 +40,10 @@ public:
   Desktop(const Desktop&) = delete;
   Desktop& operator=(const Desktop&) = delete;
 
+  /// Called on whichever thread notices that the display is gone, before the process ends: it must end it.
+  /// The X library gives no other choice.
+  static void when_lost(void (*end)());
+
   /// Handles what the window system has to say. Call it some tens of times a second.
   void listen();
 

@@ -18,6 +18,7 @@
 #include "configs/loader/loader.h"
 #include "renderer/frame/loop.h"
 #include "renderer/outputs/context.h"
+#include "renderer/outputs/desktop.h"
 #include "renderer/outputs/main_thread.h"
 #include "renderer/outputs/open.h"
 #include "server/control/http/server.h"
@@ -84,11 +85,18 @@ std::optional<model::Result<Live>> load_unless_stopped(const Options& options, O
   return loaded.get();
 }
 
+/// Without its display the process cannot go on: a new one is to be started.
+void end_without_display() {
+  spdlog::critical("the display is gone");
+  std::_Exit(exit_context_lost);
+}
+
 /// With windows where the show wants some and there is a display; else headless.
 model::Result<std::unique_ptr<outputs::Context>> open_context(const model::Show& show,
                                                               outputs::MainThread& main) {
   if (outputs::wants_windows(show.outputs)) {
     auto windowed = outputs::Context::make_windowed(main, messages_to_log());
+    if (windowed) outputs::Desktop::when_lost(&end_without_display);
     if (windowed || outputs::needs_windows(show.outputs)) return windowed;
     spdlog::info("no windows ({}); the outputs are headless", model::to_text(windowed.error().front()));
   }
@@ -228,7 +236,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.footer(
       "Exit codes: 0 ended as asked · 1 the show has problems · 2 wrong arguments or unreadable file ·\n"
-      "3 an output, OpenGL or a listener could not be opened · 4 the driver has reset the GPU");
+      "3 an output, OpenGL or a listener could not be opened · 4 the GPU was reset or the display is gone");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -298,7 +298,8 @@ class VirtualDisplay:
         return self
 
     def __exit__(self, *_):
-        self.process.terminate()
+        if self.process.poll() is None:
+            self.process.terminate()
         self.process.wait()
         self.folder_owner.cleanup()
 

@@ -5,7 +5,6 @@ windows_test.py FOLDER_OF_CUPOLAD
 """
 import shutil
 import sys
-import time
 import unittest
 from pathlib import Path
 
@@ -25,11 +24,9 @@ def windowed_show():
 
 class Windows(unittest.TestCase):
     def setUp(self):
-        self.display = self.enterContext(VirtualDisplay()) if hasattr(self, "enterContext") else None
-        if self.display is None:
-            display = VirtualDisplay()
-            self.display = display.__enter__()
-            self.addCleanup(display.__exit__, None, None, None)
+        self.display = VirtualDisplay()
+        self.display.__enter__()
+        self.addCleanup(self.display.__exit__)
 
     def daemon(self, show):
         daemon = Daemon(CUPOLAD, show, environment={"DISPLAY": self.display.name}).__enter__()
@@ -106,8 +103,8 @@ class Windows(unittest.TestCase):
         daemon = self.daemon(windowed_show())
         self.display.process.terminate()
         self.display.process.wait()
-        status = daemon.process.wait(30)
-        self.assertNotEqual(0, status, "systemd is to start it again")
+        self.assertEqual(4, daemon.process.wait(30), "systemd is to start it again")
+        self.assertIn("the display is gone", daemon.log())
 
 
 if __name__ == "__main__":
