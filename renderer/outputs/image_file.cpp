@@ -20,7 +20,7 @@ using model::Code;
 using model::failure;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::int64_t max_pixels = std::int64_t{1} << 28;
+constexpr std::int64_t max_pixels = std::int64_t{1} << 27;
 
 tl::unexpected<model::Problems> cannot_write(const std::string& what, std::string found,
                                              std::string advice = "") {
@@ -211,11 +211,11 @@ model::Result<void> write_view(const std::filesystem::path& file, const View<Cha
   return cannot_write(file.string(), wrong);
 }
 
-/// A picture as the file has it: floats, 1 to 4 channels, and whether they are linear.
-struct Samples {
-  int width = 0, height = 0, channels = 0;
-  bool linear = false;
-  std::vector<float> values;
+/// A picture file, open, that is flat and not too large.
+struct Opened {
+  std::unique_ptr<OIIO::ImageInput> reader;
+  int width = 0, height = 0, channels = 0; ///< 1 to 4 of the file's channels
+  bool linear = false;                     ///< floating samples
 };
 
 /// "" or why the path cannot be a picture. Looks before opening: a FIFO would never answer.
@@ -226,7 +226,7 @@ std::string unfit(const std::filesystem::path& file) {
   return {};
 }
 
-model::Result<Samples> read_samples(const std::filesystem::path& file) {
+model::Result<Opened> open_picture(const std::filesystem::path& file) {
   if (const std::string why = unfit(file); !why.empty()) return cannot_read(file, why);
   keep_to_this_thread();
   try {
@@ -239,27 +239,33 @@ model::Result<Samples> read_samples(const std::filesystem::path& file) {
       return cannot_read(file, "something that is not a flat picture");
     if (std::int64_t{spec.width} * spec.height > max_pixels)
       return cannot_read(file, std::to_string(spec.width) + " x " + std::to_string(spec.height) + " pixels");
-    Samples samples{
-        spec.width, spec.height, std::min(spec.nchannels, 4), spec.format.is_floating_point(), {}};
-    samples.values.resize(std::size_t(spec.width) * std::size_t(spec.height) * std::size_t(samples.channels));
-    if (!reader->read_image(0, 0, 0, samples.channels, OIIO::TypeDesc::FLOAT, samples.values.data()))
-      return cannot_read(file, reader->geterror());
-    return samples;
+    return Opened{std::move(reader), spec.width, spec.height, std::min(spec.nchannels, 4),
+                  spec.format.is_floating_point()};
   } catch (const std::exception& error) { return cannot_read(file, error.what()); }
 }
 
-template <class To, class Color, class Alpha>
-std::vector<To> as_rgba(const Samples& samples, Color color, Alpha alpha) {
-  const bool grey = samples.channels < 3;
-  const bool has_alpha = samples.channels == 2 || samples.channels == 4;
-  const auto channels = static_cast<std::size_t>(samples.channels);
-  std::vector<To> out;
-  out.reserve(samples.values.size() / channels * 4);
-  for (std::size_t i = 0; i < samples.values.size(); i += channels) {
-    for (std::size_t c = 0; c < 3; ++c) out.push_back(color(samples.values[grey ? i : i + c]));
-    out.push_back(alpha(has_alpha ? samples.values[i + channels - 1] : 1.0f));
-  }
-  return out;
+/// All samples as `From`, made RGBA by `color` and `alpha`; `opaque` stands for an alpha that the file lacks.
+template <class From, class Color, class Alpha>
+auto read_rgba(const Opened& picture, const std::filesystem::path& file, OIIO::TypeDesc type, From opaque,
+               Color color, Alpha alpha) -> model::Result<std::vector<decltype(color(opaque))>> {
+  try {
+    const auto channels = static_cast<std::size_t>(picture.channels);
+    const std::size_t pixels =
+        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    std::vector<From> samples(pixels * channels);
+    if (!picture.reader->read_image(0, 0, 0, picture.channels, type, samples.data()))
+      return cannot_read(file, picture.reader->geterror());
+    const bool grey = channels < 3, has_alpha = channels % 2 == 0;
+    std::vector<decltype(color(opaque))> out;
+    out.reserve(4 * pixels);
+    for (std::size_t i = 0; i < samples.size(); i += channels) {
+      for (std::size_t c = 0; c < 3; ++c) out.push_back(color(samples[grey ? i : i + c]));
+      out.push_back(alpha(has_alpha ? samples[i + channels - 1] : opaque));
+    }
+    return out;
+  } catch (const std::exception& error) {
+    return cannot_read(file, error.what());
+  } // too little memory, for one
 }
 
 } // namespace
@@ -293,18 +299,24 @@ model::Result<Bytes> encode_jpeg(ByteView pixels, int quality) {
 }
 
 model::Result<ByteImage> read_image(const std::filesystem::path& file) {
-  return read_samples(file).map([](const Samples& samples) {
-    return ByteImage{samples.width, samples.height,
-                     as_rgba<std::uint8_t>(samples, samples.linear ? srgb_byte : plain_byte, plain_byte)};
-  });
+  const auto picture = open_picture(file);
+  if (!picture) return tl::unexpected(picture.error());
+  const auto same = [](std::uint8_t byte) { return byte; };
+  auto rgba = picture->linear
+                  ? read_rgba(*picture, file, OIIO::TypeDesc::FLOAT, 1.0f, srgb_byte, plain_byte)
+                  : read_rgba(*picture, file, OIIO::TypeDesc::UINT8, std::uint8_t{255}, same, same);
+  if (!rgba) return tl::unexpected(std::move(rgba.error()));
+  return ByteImage{picture->width, picture->height, std::move(*rgba)};
 }
 
 model::Result<FloatImage> read_linear_image(const std::filesystem::path& file) {
-  return read_samples(file).map([](const Samples& samples) {
-    const auto same = +[](float value) { return value; };
-    return FloatImage{samples.width, samples.height,
-                      as_rgba<float>(samples, samples.linear ? same : linear_from_srgb, same)};
-  });
+  const auto picture = open_picture(file);
+  if (!picture) return tl::unexpected(picture.error());
+  const auto same = +[](float value) { return value; };
+  auto rgba =
+      read_rgba(*picture, file, OIIO::TypeDesc::FLOAT, 1.0f, picture->linear ? same : linear_from_srgb, same);
+  if (!rgba) return tl::unexpected(std::move(rgba.error()));
+  return FloatImage{picture->width, picture->height, std::move(*rgba)};
 }
 
 float srgb_from_linear(float linear) {

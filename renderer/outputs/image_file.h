@@ -66,7 +66,7 @@ inline constexpr int default_jpeg_quality = 92;
 /// Reads any picture that OpenImageIO knows; grey becomes RGB, missing alpha is opaque, rows are turned
 /// upright. Integer samples are taken as sRGB-encoded, floating ones as linear, and converted to what is
 /// asked for. Fails with image_unreadable: missing, not a regular file, not a picture, damaged, more than
-/// 2^28 pixels.
+/// 2^27 pixels.
 [[nodiscard]] model::Result<ByteImage> read_image(const std::filesystem::path& file);
 [[nodiscard]] model::Result<FloatImage> read_linear_image(const std::filesystem::path& file);
 

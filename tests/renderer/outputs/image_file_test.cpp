@@ -170,6 +170,18 @@ TEST_CASE("encoding in memory gives whole files") {
   CHECK_FALSE(encode_jpeg({}));
 }
 
+TEST_CASE("grey pictures become RGB, and a picture without alpha is opaque") {
+  const Folder folder;
+  std::ofstream(folder.path / "grey.pgm", std::ios::binary) << "P5\n2 1\n255\n" << char(10) << char(100);
+  const auto grey = read_image(folder.path / "grey.pgm");
+  REQUIRE(grey);
+  CHECK(grey->rgba == std::vector<std::uint8_t>{10, 10, 10, 255, 100, 100, 100, 255});
+  const auto linear = read_linear_image(folder.path / "grey.pgm");
+  REQUIRE(linear);
+  CHECK(linear->rgba[4] == doctest::Approx(linear_from_srgb(100.0f / 255.0f)));
+  CHECK(linear->rgba[7] == 1.0f);
+}
+
 TEST_CASE("what cannot be written is a problem and leaves nothing behind") {
   const Folder folder;
   const ByteImage image = letter_f();
@@ -207,6 +219,9 @@ TEST_CASE("what cannot be read is a problem") {
   CHECK(refused(folder.path / "empty.png"));
   REQUIRE(::mkfifo((folder.path / "pipe.png").c_str(), 0600) == 0);
   CHECK(refused(folder.path / "pipe.png"));
+  // A picture of 60,000 x 60,000 pixels, which nobody has memory for, in a file of a few bytes.
+  std::ofstream(folder.path / "vast.ppm", std::ios::binary) << "P6\n60000 60000\n255\n";
+  CHECK(refused(folder.path / "vast.ppm"));
   // A PNG cut in the middle of its pixels.
   ByteImage noise{64, 64, std::vector<std::uint8_t>(64 * 64 * 4)};
   std::uint32_t state = 1;
