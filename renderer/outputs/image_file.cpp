@@ -226,14 +226,28 @@ std::string unfit(const std::filesystem::path& file) {
   return {};
 }
 
+/// The reader that knows the file by its content. The library by itself would try everything that it can
+/// load, video decoders with network protocols among them.
+std::unique_ptr<OIIO::ImageInput> reader_of(const std::filesystem::path& file) {
+  for (const char* format :
+       {"png", "jpeg", "openexr", "tiff", "pnm", "hdr", "bmp", "webp", "gif", "jpeg2000", "dpx"}) {
+    auto reader = OIIO::ImageInput::create(format);
+    if (reader && reader->valid_file(file.string())) return reader;
+  }
+  static_cast<void>(OIIO::geterror()); // of formats that this build of the library lacks
+  return nullptr;
+}
+
 model::Result<Opened> open_picture(const std::filesystem::path& file) {
   if (const std::string why = unfit(file); !why.empty()) return cannot_read(file, why);
   keep_to_this_thread();
   try {
     OIIO::ImageSpec wish;
     wish.attribute("oiio:UnassociatedAlpha", 1);
-    auto reader = OIIO::ImageInput::open(file.string(), &wish);
-    if (!reader) return cannot_read(file, OIIO::geterror());
+    auto reader = reader_of(file);
+    if (!reader) return cannot_read(file, "none of the formats known");
+    OIIO::ImageSpec found;
+    if (!reader->open(file.string(), found, wish)) return cannot_read(file, reader->geterror());
     const OIIO::ImageSpec& spec = reader->spec();
     if (spec.width <= 0 || spec.height <= 0 || spec.nchannels < 1 || spec.depth > 1)
       return cannot_read(file, "something that is not a flat picture");

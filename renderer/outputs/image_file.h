@@ -63,8 +63,9 @@ inline constexpr int default_jpeg_quality = 92;
 [[nodiscard]] model::Result<std::vector<std::uint8_t>> encode_jpeg(ByteView pixels,
                                                                    int quality = default_jpeg_quality);
 
-/// Reads any picture that OpenImageIO knows; grey becomes RGB, missing alpha is opaque, rows are turned
-/// upright. Integer samples are taken as sRGB-encoded, floating ones as linear, and converted to what is
+/// Reads PNG, JPEG, EXR, TIFF, PNM and PFM, HDR, BMP, WebP, GIF, JPEG 2000 and DPX, known by their content;
+/// grey becomes RGB, missing alpha is opaque, rows stand as stored (a camera's note of its orientation is not
+/// heeded). Integer samples are taken as sRGB-encoded, floating ones as linear, and converted to what is
 /// asked for. Fails with image_unreadable: missing, not a regular file, not a picture, damaged, more than
 /// 2^27 pixels.
 [[nodiscard]] model::Result<ByteImage> read_image(const std::filesystem::path& file);
