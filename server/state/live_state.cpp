@@ -1,7 +1,6 @@
 #include "server/state/live_state.h"
 
 #include <algorithm>
-#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -27,6 +26,24 @@ using model::Problems;
 namespace {
 
 using SnapshotPtr = std::shared_ptr<const Snapshot>;
+
+/// The newest snapshot. A lock is held for the copy of a pointer and nothing else:
+/// std::atomic<std::shared_ptr> of libstdc++ 12 lets a reader go with relaxed order, which is a data race.
+class Published {
+public:
+  [[nodiscard]] SnapshotPtr load() const {
+    const std::lock_guard lock(mutex_);
+    return snapshot_;
+  }
+  void store(SnapshotPtr next) {
+    const std::lock_guard lock(mutex_);
+    snapshot_.swap(next);
+  } // the old one, if this was the last reference, is freed by whoever called, after the lock
+
+private:
+  mutable std::mutex mutex_;
+  SnapshotPtr snapshot_;
+};
 
 struct Item {
   std::variant<model::Change, std::filesystem::path> what;
@@ -164,7 +181,7 @@ struct LiveState::Impl {
   void answer(const Item& item, const Answer& given);
 
   Options options;
-  std::atomic<SnapshotPtr> current;
+  Published current;
   FrameLog frames;
 
   std::mutex mutex; ///< guards queue and stop
