@@ -18,5 +18,7 @@ void add_render(CLI::App& app, ExitCode& exit_code);
 void add_bench(CLI::App& app, ExitCode& exit_code);
 void add_schema(CLI::App& app, ExitCode& exit_code);
 void add_docs(CLI::App& app, ExitCode& exit_code);
+void add_get(CLI::App& app, ExitCode& exit_code);
+void add_set(CLI::App& app, ExitCode& exit_code);
 
 } // namespace cupola::cli

@@ -16,6 +16,8 @@ int main(int argc, char** argv) {
   add_bench(app, exit_code);
   add_schema(app, exit_code);
   add_docs(app, exit_code);
+  add_get(app, exit_code);
+  add_set(app, exit_code);
 
   try {
     app.parse(argc, argv);

@@ -16,7 +16,7 @@ struct OscArgument {
   char type = 'N';
   double number = 0.0;      ///< i h f d; a 32-bit float as its shortest decimal, so that 0.1 stays 0.1
   std::int64_t integer = 0; ///< i h
-  std::string text;         ///< s S
+  std::string text{};       ///< s S
 };
 
 struct OscMessage {
