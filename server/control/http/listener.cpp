@@ -29,7 +29,8 @@ class Session;
 namespace {
 
 Response failed(int status, std::string expected, std::string found) {
-  const model::Problem problem{model::Code::bad_request, "", std::move(expected), std::move(found), {}, {}};
+  const auto code = status == 503 ? model::Code::overloaded : model::Code::bad_request;
+  const model::Problem problem{code, "", std::move(expected), std::move(found), {}, {}};
   return {status,
           "application/json",
           model::Json{{"problems", problems_json({problem})}}.dump(-1, ' ', false,

@@ -198,7 +198,8 @@ class Changing(fake.WithDaemon):
         self.assertEqual(self.get("show/name"), "d")
 
     def test_put_and_delete(self):
-        put = lambda path, value: self.ask("PUT", "/api/v1/show" + path, value)
+        json_type = {"Content-Type": "application/json"}
+        put = lambda path, value: self.ask("PUT", "/api/v1/show" + path, json.dumps(value), json_type)
         self.assertEqual(put("/projections/wall/horizontal_fov", 90)[0], 200)
         self.assertEqual(self.get(FOV), 90)
         code, answer, _ = put("/projections/wall", {"kind": "fisheye"})  # replaces: no field of view is left over
