@@ -12,8 +12,9 @@ CUPOLA = sys.argv.pop(1)
 
 class GetSet(fake.WithDaemon):
     def run_cupola(self, *words, url=None):
-        done = subprocess.run([CUPOLA, *words, "--url", url or f"http://127.0.0.1:{self.http}"],
-                              capture_output=True, text=True, timeout=60)
+        at = ["--url", url or f"http://127.0.0.1:{self.http}"]
+        done = subprocess.run([CUPOLA, words[0], *at, *words[1:]], capture_output=True, text=True,
+                              timeout=60)
         return done.returncode, done.stdout, done.stderr
 
     def test_get(self):
@@ -36,6 +37,8 @@ class GetSet(fake.WithDaemon):
         self.assertEqual(self.get("show/camera/position"), [1, 2, 3])
         self.assertEqual(self.run_cupola("set", "/camera/orientation/yaw", "--", "-30.5")[0], 0)
         self.assertEqual(self.get("show/camera/orientation/yaw"), -30.5)
+        self.assertEqual(self.run_cupola("set", "/camera/orientation/yaw", "-20")[0], 0)
+        self.assertEqual(self.get("show/camera/orientation/yaw"), -20)
         self.assertEqual(self.run_cupola("set", "/projections/wall/horizontal_fov", "null")[0], 0)
         self.assertEqual(self.get("show/projections/wall/horizontal_fov"), 180)
 
