@@ -1,5 +1,6 @@
 #include "configs/loader/checks.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -76,16 +77,91 @@ void unused_projections(const Show& show, Findings& out) {
 
 void rectangles(const Show& show, Findings& out) {
   constexpr double slack = 1e-9; // thirds and the like do not sum to 1 exactly
-  each_viewport(show, [&](const std::string& at, const model::Viewport& viewport, const model::Output&) {
-    if (viewport.x + viewport.width > 1 + slack)
+  const auto leaves = [&](const std::string& at, const char* sum, double value) {
+    if (value > 1 + slack)
       out.push_back(
-          {{Code::outside_output, at, "x + width of at most 1", short_number(viewport.x + viewport.width)},
-           {}});
-    if (viewport.y + viewport.height > 1 + slack)
-      out.push_back(
-          {{Code::outside_output, at, "y + height of at most 1", short_number(viewport.y + viewport.height)},
-           {}});
-  });
+          {{Code::outside_output, at, std::string(sum) + " of at most 1", short_number(value)}, {}});
+  };
+  const auto vanishes = [&](const std::string& at, const char* side, double pixels) {
+    if (pixels < 1)
+      out.push_back({{Code::out_of_range, at + '/' + side, "at least one pixel of the output",
+                      short_number(pixels) + " pixels"},
+                     {at.substr(0, at.rfind("/viewports/")) + '/' + side}});
+  };
+  each_viewport(show,
+                [&](const std::string& at, const model::Viewport& viewport, const model::Output& output) {
+                  leaves(at, "x + width", viewport.x + viewport.width);
+                  leaves(at, "y + height", viewport.y + viewport.height);
+                  vanishes(at, "width", viewport.width * output.width);
+                  vanishes(at, "height", viewport.height * output.height);
+                });
+}
+
+struct Rectangle {
+  double left, top, width, height;
+};
+bool overlap(const Rectangle& a, const Rectangle& b) {
+  constexpr double slack = 1e-9;
+  return std::min(a.left + a.width, b.left + b.width) - std::max(a.left, b.left) > slack &&
+         std::min(a.top + a.height, b.top + b.height) - std::max(a.top, b.top) > slack;
+}
+
+/// Overlapping viewports of one order are drawn in the order of their names, which nobody will have meant.
+void drawing_orders(const Show& show, Findings& out) {
+  const auto rectangle = [](const model::Viewport& one) {
+    return Rectangle{one.x, one.y, one.width, one.height};
+  };
+  for (const auto& [output_name, output] : show.outputs) {
+    const std::string all = "/outputs/" + escaped(output_name) + "/viewports/";
+    for (auto later = output.viewports.begin(); later != output.viewports.end(); ++later)
+      for (auto earlier = output.viewports.begin(); earlier != later; ++earlier) {
+        const bool tie = earlier->second.order == later->second.order;
+        if (!tie || !overlap(rectangle(earlier->second), rectangle(later->second))) continue;
+        out.push_back({{Code::order_tie,
+                        all + escaped(later->first),
+                        "an order of its own, as it overlaps " + in_quotes(earlier->first),
+                        "the same order",
+                        "Give the one in front the greater \"order\".",
+                        {},
+                        Severity::warning},
+                       {all + escaped(earlier->first)}});
+        break; // one is enough to say so
+      }
+  }
+}
+
+/// Windows that hide each other on one monitor.
+void windows(const Show& show, Findings& out) {
+  struct Placed {
+    std::string name, monitor;
+    bool fullscreen;
+    Rectangle at;
+  };
+  std::vector<Placed> placed;
+  for (const auto& [name, output] : show.outputs) {
+    const auto* window = std::get_if<model::WindowOutput>(&output.sink);
+    if (!window) continue;
+    const std::string monitor =
+        window->monitor.empty() ? "0" : window->monitor; // the first is the primary one
+    const Placed here{name,
+                      monitor,
+                      window->fullscreen,
+                      {double(window->x), double(window->y), double(output.width), double(output.height)}};
+    const auto hidden = [&](const Placed& other) {
+      return other.monitor == monitor && (other.fullscreen || here.fullscreen || overlap(other.at, here.at));
+    };
+    const auto other = std::find_if(placed.begin(), placed.end(), hidden);
+    if (other != placed.end())
+      out.push_back({{Code::windows_overlap,
+                      "/outputs/" + escaped(name),
+                      "a place beside window " + in_quotes(other->name),
+                      "one that overlaps it",
+                      "Change \"x\" and \"y\", or the monitor.",
+                      {},
+                      Severity::warning},
+                     {"/outputs/" + escaped(other->name)}});
+    placed.push_back(here);
+  }
 }
 
 /// One look: of the camera or of a key frame. `up_at`: where the 'up' that it uses stands.
@@ -182,8 +258,8 @@ void aspects(const Show& show, Findings& out) {
 } // namespace
 
 void cross_check(const Show& show, Report& report) {
-  constexpr std::array checks{references, rectangles,         camera, off_axis,
-                              listeners,  unused_projections, aspects};
+  constexpr std::array checks{references, rectangles, drawing_orders,     windows, camera,
+                              off_axis,   listeners,  unused_projections, aspects};
   Findings findings;
   for (const auto& check : checks) check(show, findings);
   // Decided before anything is added: two findings about one value are both told.

@@ -35,6 +35,7 @@ struct Loaded {
 [[nodiscard]] model::Result<Loaded> decode_show(const nlohmann::ordered_json& document);
 
 /// Gives problems found later (planning) the place of their pointer, or of its nearest parent that has one.
+/// Those that name a place or another file already are left alone.
 void locate(model::Problems& problems, const Positions& positions);
 
 /// The JSON Schema (draft 2020-12) of a show file, generated from the parameter table.

@@ -53,7 +53,7 @@ Problems Report::take() {
 
 void locate(Problems& problems, const Positions& positions) {
   for (Problem& problem : problems) {
-    if (problem.at.line > 0) continue;
+    if (problem.at.line > 0 || !problem.at.file.empty()) continue;
     std::string_view pointer = problem.pointer;
     for (;;) {
       if (const auto found = positions.find(pointer); found != positions.end()) {

@@ -56,8 +56,9 @@ TEST_CASE("broken shows yield the problems written beside them, and every CFG co
   }
   // Files as such are tested in abuse_test.cpp, warnings below; a restart is asked for by the live show
   // alone.
-  for (const auto code : {model::Code::file_unreadable, model::Code::file_too_large,
-                          model::Code::picture_aspect, model::Code::needs_restart})
+  for (const auto code :
+       {model::Code::file_unreadable, model::Code::file_too_large, model::Code::picture_aspect,
+        model::Code::windows_overlap, model::Code::order_tie, model::Code::needs_restart})
     seen.insert(model::code_id(code));
   for (const model::CodeText& text : model::code_texts())
     if (text.id.starts_with("CFG")) {
@@ -77,5 +78,6 @@ TEST_CASE("good shows are accepted, with the warnings written beside them") {
       CHECK(lines(loaded->warnings) == expected_beside(file));
       for (const model::Problem& problem : loaded->warnings) warned.insert(problem.code);
     }
-  CHECK(warned == std::set{model::Code::picture_aspect, model::Code::unused});
+  CHECK(warned == std::set{model::Code::picture_aspect, model::Code::unused, model::Code::windows_overlap,
+                           model::Code::order_tie});
 }

@@ -67,12 +67,14 @@ TEST_CASE("problems found later get the place of their value, or of the nearest 
                            {model::Code::over_budget, "/quality/cubemap_size"},
                            {model::Code::over_budget, "no pointer"}};
   problems.push_back({model::Code::scene_invalid, "/outputs/main", "", "", "", {"x.gltf", 3, 4}});
+  problems.push_back({model::Code::scene_invalid, "/outputs/main", "", "", "", {"y.gltf", 0, 0}});
   loader::locate(problems, loaded->positions);
   CHECK(problems[0].at == model::Position{"small.json", 6, 83});
   CHECK(problems[1].at == model::Position{"small.json", 6, 49});
   CHECK(problems[2].at == model::Position{"small.json", 1, 1});
   CHECK(problems[3].at == model::Position{"small.json", 1, 1});
   CHECK(problems[4].at == model::Position{"x.gltf", 3, 4}); // a place already known stays
+  CHECK(problems[5].at == model::Position{"y.gltf", 0, 0}); // and so does another file
 }
 
 TEST_CASE("without positions, problems keep their pointers") {
