@@ -2,11 +2,18 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "configs/loader/loader.h"
+#include "renderer/content/scene.h"
+#include "renderer/plan/plan.h"
 #include "server/cli/commands.h"
 #include "server/cli/report.h"
 
@@ -24,11 +31,35 @@ void append(model::Problems& to, model::Problems from) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
 }
 
-/// Everything about one file: the loader's problems, or, where it has none, those of what follows.
+/// The scene file that the show names. Its problems stand at paths inside that file; one with the file as a
+/// whole stands in the show. Scenes that are generated always exist.
+model::Problems scene_problems(const model::Show& show, const std::filesystem::path& folder) {
+  const auto* gltf = std::get_if<model::Gltf>(&show.scene.content);
+  if (!gltf) return {};
+  auto scene = content::load_scene(show.scene.content, folder);
+  model::Problems problems = scene ? std::move(scene->warnings) : std::move(scene.error());
+  for (model::Problem& problem : problems)
+    if (problem.pointer.empty()) {
+      problem.pointer = "/scene/content/file";
+      if (!problem.at.file.empty()) problem.found = problem.at.file + ": " + problem.found;
+      problem.at = {};
+    }
+  return problems;
+}
+
+/// Everything about one file: the loader's problems, or, where it has none, those of geometry and scene.
 model::Problems problems_of(const std::string& file) {
   auto loaded = loader::load_show(file);
   if (!loaded) return std::move(loaded.error());
-  return std::move(loaded->warnings);
+  model::Problems problems = std::move(loaded->warnings);
+  auto planned = plan::make_plan(loaded->show);
+  append(problems, planned ? std::move(planned->warnings) : std::move(planned.error()));
+  append(problems, scene_problems(loaded->show, std::filesystem::path(file).parent_path()));
+  loader::locate(problems, loaded->positions);
+  std::stable_sort(problems.begin(), problems.end(), [](const model::Problem& a, const model::Problem& b) {
+    return std::tie(a.at.line, a.at.column) < std::tie(b.at.line, b.at.column);
+  });
+  return problems;
 }
 
 ExitCode verdict(const model::Problems& problems, bool strict) {

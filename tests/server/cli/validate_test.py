@@ -61,6 +61,31 @@ class Validate(unittest.TestCase):
         self.assertEqual(cupola("validate", GOOD).stdout, GOOD + ": valid\n")
         self.assertIn("warning: /projections/spare", cupola("validate", WARNED).stdout)
 
+    def test_geometry_and_scene_are_checked_too(self):
+        """What the daemon would find only when it prepares the show."""
+        outputs = '"outputs": {"o": {"viewports": {"v": {"projection": "p",\n "method": "%s"}}}}'
+        projections = '"projections": {"p": {"kind": "fisheye"}}'
+        with tempfile.TemporaryDirectory() as folder:
+            show, model = Path(folder, "show.json"), Path(folder, "model.gltf")
+            show.write_text('{"version": 1, %s, %s}' % (projections, outputs % "piecewise"))
+            done = cupola("validate", show)
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stdout, r"show\.json:2:12: error: /outputs/o/viewports/v/method: .*\[PLN-101\]")
+
+            content = '"scene": {"content": {"kind": "gltf",\n\n "file": "model.gltf"}}'
+            show.write_text('{"version": 1, %s, %s, %s}' % (content, projections, outputs % "cubemap"))
+            done = cupola("validate", show)
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stdout, r"show\.json:3:10: error: /scene/content/file: .*\[SCN-101\]")
+
+            model.write_text('{"asset": {"version": "2.0"}, "accessors": [{"count": -1}], "scenes": [{"nodes": [7]}]}')
+            done = cupola("validate", show)
+            self.assertEqual(done.returncode, 1)
+            self.assertRegex(done.stdout, r"model\.gltf: error: /")
+
+            model.write_text('{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}]}')
+            self.assertNotIn("model.gltf: error: /nodes", cupola("validate", show).stdout)
+
     def test_json(self):
         problems = json.loads(cupola("validate", "--format", "json", BROKEN, WARNED, "tests").stdout)
         self.assertEqual(len(problems), 9)
