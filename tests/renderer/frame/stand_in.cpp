@@ -60,7 +60,7 @@ Renderer::~Renderer() {
   --tests::stand_in().alive;
 }
 
-model::Result<std::unique_ptr<Renderer>> Renderer::make() {
+model::Result<std::unique_ptr<Renderer>> Renderer::make(RendererOptions) {
   auto impl = std::make_unique<Impl>();
   glCreateFramebuffers(1, &impl->framebuffer);
   return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
