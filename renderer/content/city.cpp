@@ -1,7 +1,9 @@
 #include "renderer/content/city.h"
 
 #include <array>
+#include <future>
 #include <utility>
+#include <vector>
 
 #include "renderer/content/city_mesh.h"
 #include "renderer/content/city_pictures.h"
@@ -35,9 +37,9 @@ const std::array<Look, city::group_count>& looks() {
   return all;
 }
 
-void add_material(Scene& scene, const Look& look, bool sky) {
+void add_material(Scene& scene, const Look& look, Image picture, bool sky) {
   const auto index = static_cast<int>(scene.materials.size());
-  scene.images.push_back(look.paint());
+  scene.images.push_back(std::move(picture));
   Texture texture;
   texture.image = index;
   if (sky) texture.wrap_t = Wrap::clamp; // the zenith must not mix with the nadir
@@ -55,9 +57,12 @@ void add_material(Scene& scene, const Look& look, bool sky) {
 
 Scene make_city(const model::City& wish) {
   Scene scene;
-  for (std::size_t group = 0; group < looks().size(); ++group)
-    add_material(scene, looks()[group], group == static_cast<std::size_t>(city::Group::sky));
+  std::vector<std::future<Image>> pictures; // painted on other cores meanwhile
+  for (const Look& look : looks()) pictures.push_back(std::async(std::launch::async, look.paint));
   city::Mesh mesh = city::build(city::make_plan(wish));
+  for (std::size_t group = 0; group < looks().size(); ++group)
+    add_material(scene, looks()[group], pictures[group].get(),
+                 group == static_cast<std::size_t>(city::Group::sky));
   scene.geometry.vertices = std::move(mesh.vertices);
   make_clusters(scene.geometry, mesh.triangles, scene.materials);
   scene.static_vertices = static_cast<std::uint32_t>(scene.geometry.vertices.size());

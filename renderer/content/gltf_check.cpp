@@ -12,6 +12,8 @@ namespace {
 using Json = nlohmann::json;
 
 enum class Kind : std::uint8_t {
+  stride,
+  word,
   index,
   whole,
   number,
@@ -33,6 +35,7 @@ struct Rule {
   const char* refers = nullptr;              ///< list that an index points into; null: any
   const std::vector<Rule>* inside = nullptr; ///< of an object, or of each object of a list
   std::size_t length = 0;                    ///< of a list of numbers; 0: any
+  std::vector<std::string> words;            ///< of a word: those that there are
 };
 using Rules = std::vector<Rule>;
 
@@ -66,7 +69,7 @@ const Rules& material_rules() {
                            {"occlusionTexture", Kind::object, false, nullptr, info},
                            {"emissiveTexture", Kind::object, false, nullptr, info},
                            {"emissiveFactor", Kind::numbers, false, nullptr, nullptr, 3},
-                           {"alphaMode", Kind::text},
+                           {"alphaMode", Kind::word, false, nullptr, nullptr, 0, {"OPAQUE", "MASK", "BLEND"}},
                            {"alphaCutoff", Kind::number},
                            {"doubleSided", Kind::flag},
                            {"extensions", Kind::object, false, nullptr, &extensions}};
@@ -96,7 +99,13 @@ const Rules& accessor_rules() {
                            {"componentType", Kind::whole, true},
                            {"normalized", Kind::flag},
                            {"count", Kind::whole, true},
-                           {"type", Kind::text, true},
+                           {"type",
+                            Kind::word,
+                            true,
+                            nullptr,
+                            nullptr,
+                            0,
+                            {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"}},
                            {"sparse", Kind::object, false, nullptr, &sparse},
                            {"min", Kind::numbers},
                            {"max", Kind::numbers}};
@@ -123,9 +132,10 @@ const Rules& animation_rules() {
   static const Rules target{{"node", Kind::index, false, "nodes"}, {"path", Kind::text, true}};
   static const Rules channel{{"sampler", Kind::whole, true},
                              {"target", Kind::object, true, nullptr, &target}};
-  static const Rules sampler{{"input", Kind::index, true, "accessors"},
-                             {"interpolation", Kind::text},
-                             {"output", Kind::index, true, "accessors"}};
+  static const Rules sampler{
+      {"input", Kind::index, true, "accessors"},
+      {"interpolation", Kind::word, false, nullptr, nullptr, 0, {"LINEAR", "STEP", "CUBICSPLINE"}},
+      {"output", Kind::index, true, "accessors"}};
   static const Rules rules{{"name", Kind::text},
                            {"channels", Kind::objects, true, nullptr, &channel},
                            {"samplers", Kind::objects, true, nullptr, &sampler}};
@@ -134,7 +144,7 @@ const Rules& animation_rules() {
 
 const Rules& lights_rules() {
   static const Rules spot{{"innerConeAngle", Kind::number}, {"outerConeAngle", Kind::number}};
-  static const Rules light{{"type", Kind::text, true},
+  static const Rules light{{"type", Kind::word, true, nullptr, nullptr, 0, {"directional", "point", "spot"}},
                            {"color", Kind::numbers, false, nullptr, nullptr, 3},
                            {"intensity", Kind::number},
                            {"range", Kind::number},
@@ -149,7 +159,7 @@ const Rules& root_rules() {
   static const Rules view{{"buffer", Kind::index, true, "buffers"},
                           {"byteOffset", Kind::whole},
                           {"byteLength", Kind::whole, true},
-                          {"byteStride", Kind::whole}};
+                          {"byteStride", Kind::stride}};
   static const Rules buffer{{"uri", Kind::text}, {"byteLength", Kind::whole, true}};
   static const Rules image{
       {"uri", Kind::text}, {"mimeType", Kind::text}, {"bufferView", Kind::index, false, "bufferViews"}};
@@ -245,6 +255,12 @@ private:
     case Kind::index_map:
       index_map(value, rule, at);
       break;
+    case Kind::word:
+      word(value, rule, at);
+      break;
+    case Kind::stride:
+      stride(value, at);
+      break;
     default:
       list(value, rule, at);
     }
@@ -291,6 +307,20 @@ private:
       report_.invalid(at,
                       "an index into /" + std::string(rule.refers) + ", which has " + std::to_string(size),
                       brief(value));
+  }
+
+  void word(const Json& value, const Rule& rule, const std::string& at) {
+    std::string all;
+    for (const std::string& one : rule.words) all += (all.empty() ? "" : ", ") + one;
+    const bool known = value.is_string() && std::find(rule.words.begin(), rule.words.end(),
+                                                      value.get<std::string>()) != rule.words.end();
+    expect(known, value, ("one of " + all).c_str(), at);
+  }
+
+  void stride(const Json& value, const std::string& at) {
+    if (!whole(value, at)) return;
+    const auto bytes = value.get<std::uint64_t>();
+    expect(bytes >= 4 && bytes <= 252 && bytes % 4 == 0, value, "a multiple of 4 from 4 to 252", at);
   }
 
   bool whole(const Json& value, const std::string& at) {

@@ -86,9 +86,6 @@ void check_views(const Document& document, Report& report) {
       report.invalid(path("bufferViews", i, "/byteLength"),
                      "at most " + std::to_string(size - view.byteOffset) + " bytes to the buffer's end",
                      std::to_string(view.byteLength));
-    if (view.byteStride != 0 && (view.byteStride < 4 || view.byteStride > 252 || view.byteStride % 4 != 0))
-      report.invalid(path("bufferViews", i, "/byteStride"), "a multiple of 4 from 4 to 252",
-                     std::to_string(view.byteStride));
   }
 }
 

@@ -7,20 +7,7 @@
 namespace cupola::content {
 namespace {
 
-/// 12th root by Newton, with basic arithmetic alone: the same bits on every machine, which libm's pow is not.
-double root12(double x) {
-  const double square = std::sqrt(std::sqrt(x)); // correctly rounded by IEEE 754
-  double root = square > 0.1 ? 1.0 : 0.5;
-  for (int i = 0; i < 60; ++i) root -= (root * root * root - square) / (3.0 * root * root);
-  return root;
-}
-
-double encode(double linear) {
-  if (linear <= 0.0031308) return 12.92 * std::max(linear, 0.0);
-  if (linear >= 1.0) return 1.0;
-  return 1.055 * root12(linear * linear * linear * linear * linear) - 0.055; // x^(5/12)
-}
-
+/// x^2.4 by Newton with basic arithmetic alone: the same bits on every machine, which libm's pow is not.
 double decode(double code) {
   if (code <= 0.04045) return code / 12.92;
   const double base = (code + 0.055) / 1.055; // x^2.4 = (x^12)^(1/5)
@@ -43,13 +30,25 @@ const std::array<float, 256>& decoded() {
   return table;
 }
 
-/// Codes of 4096 steps of the square root of light: finer than a code everywhere, and quick to look up.
-const std::array<std::uint8_t, 4097>& encoded() {
-  static const std::array<std::uint8_t, 4097> table = [] {
-    std::array<std::uint8_t, 4097> made{};
-    for (int i = 0; i <= 4096; ++i) {
-      const double root = i / 4096.0;
-      made[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(encode(root * root) * 255.0));
+/// Light halfway between a code and the next, as codes count: where rounding changes.
+const std::array<float, 255>& borders() {
+  static const std::array<float, 255> table = [] {
+    std::array<float, 255> made{};
+    for (int i = 0; i < 255; ++i)
+      made[static_cast<std::size_t>(i)] = static_cast<float>(decode((i + 0.5) / 255.0));
+    return made;
+  }();
+  return table;
+}
+
+/// First guesses for 1024 steps of the square root of light.
+const std::array<std::uint8_t, 1025>& guesses() {
+  static const std::array<std::uint8_t, 1025> table = [] {
+    std::array<std::uint8_t, 1025> made{};
+    for (int i = 0; i <= 1024; ++i) {
+      const auto light = static_cast<float>(i / 1024.0 * (i / 1024.0));
+      made[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(
+          std::upper_bound(borders().begin(), borders().end(), light) - borders().begin());
     }
     return made;
   }();
@@ -151,8 +150,11 @@ glm::vec4 bilinear(const MipChain::Level& level, bool srgb, const Texture& textu
 float srgb_to_linear(std::uint8_t code) { return decoded()[code]; }
 
 std::uint8_t linear_to_srgb(float linear) {
-  const float root = std::sqrt(std::clamp(linear, 0.0f, 1.0f));
-  return encoded()[static_cast<std::size_t>(root * 4096.0f + 0.5f)];
+  const float light = std::clamp(linear, 0.0f, 1.0f);
+  std::size_t code = guesses()[static_cast<std::size_t>(std::sqrt(light) * 1024.0f)];
+  while (code < 255 && light >= borders()[code]) ++code;
+  while (code > 0 && light < borders()[code - 1]) --code;
+  return static_cast<std::uint8_t>(code);
 }
 
 MipChain make_mipmaps(const Image& image) {
