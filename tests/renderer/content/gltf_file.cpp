@@ -4,6 +4,7 @@
 #include <OpenImageIO/imageio.h>
 #include <cstring>
 #include <fstream>
+#include <system_error>
 #include <unistd.h>
 
 namespace cupola::content {
@@ -22,10 +23,19 @@ void put_word(std::vector<std::uint8_t>& out, std::size_t value) {
 } // namespace
 
 std::filesystem::path gltf_folder() {
-  const std::filesystem::path folder =
-      std::filesystem::path(CUPOLA_BINARY_DIR) / "tests" / ("gltf-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  return folder;
+  struct Folder { // goes with the program
+    std::filesystem::path path =
+        std::filesystem::path(CUPOLA_BINARY_DIR) / "tests" / ("gltf-" + std::to_string(getpid()));
+    Folder() { std::filesystem::create_directories(path); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() {
+      std::error_code ignored;
+      std::filesystem::remove_all(path, ignored);
+    }
+  };
+  static const Folder folder;
+  return folder.path;
 }
 
 std::filesystem::path write_bytes(const std::string& name, const std::vector<std::uint8_t>& bytes) {
