@@ -6,7 +6,7 @@
 #include "renderer/content/city_mesh.h"
 #include "renderer/content/city_plan.h"
 #include "renderer/content/random.h"
-#include "scene_checks.h"
+#include "tests/renderer/content/scene_checks.h"
 
 using namespace cupola;
 using namespace cupola::content;

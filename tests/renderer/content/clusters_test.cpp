@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "renderer/content/random.h"
-#include "scene_checks.h"
+#include "tests/renderer/content/scene_checks.h"
 
 using namespace cupola::content;
 

@@ -3,9 +3,9 @@
 #include <functional>
 #include <sys/stat.h>
 
-#include "gltf_file.h"
 #include "renderer/content/random.h"
-#include "scene_checks.h"
+#include "tests/renderer/content/gltf_file.h"
+#include "tests/renderer/content/scene_checks.h"
 
 using namespace cupola;
 using namespace cupola::content;

@@ -1,4 +1,4 @@
-#include "gltf_file.h"
+#include "tests/renderer/content/gltf_file.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>

@@ -3,8 +3,8 @@
 
 #include <doctest/doctest.h>
 
-#include "gltf_file.h"
-#include "scene_checks.h"
+#include "tests/renderer/content/gltf_file.h"
+#include "tests/renderer/content/scene_checks.h"
 
 using namespace cupola;
 using namespace cupola::content;

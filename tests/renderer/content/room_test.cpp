@@ -4,7 +4,7 @@
 
 #include "renderer/content/mipmap.h"
 #include "renderer/content/random.h"
-#include "scene_checks.h"
+#include "tests/renderer/content/scene_checks.h"
 
 using namespace cupola;
 using namespace cupola::content;
