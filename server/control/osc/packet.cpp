@@ -35,26 +35,34 @@ double shortest(float value) {
   return out;
 }
 
-OscArgument to_argument(char type, const lo_arg& value) {
+/// The library lays its values at multiples of 4 bytes, whatever their type wants.
+template <class T>
+T read(const void* at) {
+  T out;
+  std::memcpy(&out, at, sizeof out);
+  return out;
+}
+
+OscArgument to_argument(char type, const void* at) {
   OscArgument out{type, 0.0, 0, {}};
   switch (type) {
   case 'i':
-    out.integer = value.i;
-    out.number = value.i;
+    out.integer = read<std::int32_t>(at);
+    out.number = static_cast<double>(out.integer);
     break;
   case 'h':
-    out.integer = value.h;
-    out.number = static_cast<double>(value.h);
+    out.integer = read<std::int64_t>(at);
+    out.number = static_cast<double>(out.integer);
     break;
   case 'f':
-    out.number = shortest(value.f);
+    out.number = shortest(read<float>(at));
     break;
   case 'd':
-    out.number = value.d;
+    out.number = read<double>(at);
     break;
   case 's':
   case 'S':
-    out.text = &value.s;
+    out.text = static_cast<const char*>(at);
     break;
   default:
     break;
@@ -85,7 +93,7 @@ model::Result<OscMessage> parse_message(std::string_view bytes) {
   const char* types = lo_message_get_types(message.get());
   lo_arg** values = lo_message_get_argv(message.get());
   for (int i = 0; i < lo_message_get_argc(message.get()); ++i)
-    out.arguments.push_back(to_argument(types[i], *values[i]));
+    out.arguments.push_back(to_argument(types[i], values[i]));
   return out;
 }
 

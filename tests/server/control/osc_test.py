@@ -67,7 +67,7 @@ class Osc(fake.WithDaemon):
     def reaches(self, path, wanted):
         """Packets have no answer: a question after them is answered when they are through the door; then the
         show needs a moment."""
-        for _ in range(1000):
+        for _ in range(6000):
             if self.get("show" + path) == wanted:
                 return
             time.sleep(0.01)
