@@ -25,7 +25,9 @@ struct ReferenceView::Impl {
   std::optional<Job> job; ///< next to be traced
   bool tracing = false;
   std::optional<reference::Picture> finished; ///< newest, not uploaded yet
-  std::function<void(double)> progress;
+  ReferenceOptions options;
+  bool failed = false;      ///< the picture last traced
+  model::Problems problems; ///< why
   std::atomic<bool> cancel{false};
   bool stop = false;
 
@@ -49,7 +51,7 @@ struct ReferenceView::Impl {
     content::Pose pose;
     for (;;) {
       Job now;
-      std::function<void(double)> report;
+      ReferenceOptions wanted;
       {
         std::unique_lock lock(mutex);
         changed.wait(lock, [this] { return stop || job.has_value(); });
@@ -57,7 +59,7 @@ struct ReferenceView::Impl {
         now = std::move(*job);
         job.reset();
         tracing = true;
-        report = progress;
+        wanted = options;
       }
       if (scene != now.stage->scene) {
         scene = now.stage->scene;
@@ -76,14 +78,18 @@ struct ReferenceView::Impl {
       request.scene = show.scene;
       request.background = show.background;
       request.rect = {0, 0, now.width, now.height};
-      request.samples = show.quality.samples * show.quality.supersampling * show.quality.supersampling;
-      request.progress = report;
+      const int drawn = show.quality.samples * show.quality.supersampling * show.quality.supersampling;
+      request.samples = wanted.samples > 0 ? wanted.samples : drawn;
+      request.threads = wanted.threads;
+      request.progress = wanted.progress;
       request.cancel = &cancel;
       reference::Picture picture(now.width, now.height, glm::dvec3(0.0));
       const bool whole = tracer->render(request, picture);
       {
         const std::lock_guard lock(mutex);
         if (whole) finished = std::move(picture);
+        failed = !whole;
+        if (failed) problems = tracer->problems();
         tracing = false;
       }
       changed.notify_all();
@@ -126,14 +132,21 @@ void ReferenceView::request(std::shared_ptr<const Stage> stage, const plan::View
   impl_->changed.notify_all();
 }
 
-void ReferenceView::set_progress(std::function<void(double)> progress) {
+void ReferenceView::set_options(ReferenceOptions options) {
   const std::lock_guard lock(impl_->mutex);
-  impl_->progress = std::move(progress);
+  impl_->options = std::move(options);
 }
 
 void ReferenceView::wait() {
   std::unique_lock lock(impl_->mutex);
-  impl_->changed.wait(lock, [this] { return impl_->finished.has_value() || impl_->stop; });
+  impl_->changed.wait(lock, [this] {
+    return impl_->finished.has_value() || impl_->stop || (impl_->failed && !impl_->tracing && !impl_->job);
+  });
+}
+
+model::Problems ReferenceView::take_problems() {
+  const std::lock_guard lock(impl_->mutex);
+  return std::exchange(impl_->problems, {});
 }
 
 GLuint ReferenceView::texture() {

@@ -11,6 +11,12 @@
 
 namespace cupola::frame {
 
+struct ReferenceOptions {
+  int samples = 0;                      ///< rays a pixel; 0: as many as the show's quality draws a pixel with
+  int threads = 1;                      ///< 0: one per core; a running show keeps the others for itself
+  std::function<void(double)> progress; ///< share of the picture in the making, 0 to 1; any thread
+};
+
 class ReferenceView {
 public:
   ReferenceView();
@@ -21,10 +27,13 @@ public:
   /// Starts the next picture if none is in the making.
   void request(std::shared_ptr<const Stage> stage, const plan::ViewportPlan& viewport,
                const plan::CameraPose& camera, double time);
-  /// Off-line: each request is waited for, so that the picture is that of the frame.
+  /// Off-line: each request is waited for, so that the picture is that of the frame. Returns without one when
+  /// tracing failed.
   void wait();
-  /// Share of the picture in the making that is done, 0 to 1; any thread. Set before the first request.
-  void set_progress(std::function<void(double)> progress);
+  /// For the pictures requested from now on.
+  void set_options(ReferenceOptions options);
+  /// Why the last picture failed; empties the list.
+  [[nodiscard]] model::Problems take_problems();
   /// The newest picture as a texture, GL's row 0 at the bottom; 0 while there is none.
   [[nodiscard]] GLuint texture();
 

@@ -221,9 +221,11 @@ passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const pla
 void Renderer::Impl::draw_reference(const std::string& key, const plan::ViewportPlan& viewport,
                                     const plan::CameraPose& camera, double time) {
   ReferenceView& view = references[key];
-  view.set_progress(options.progress);
+  view.set_options({options.reference_samples, options.offline ? 0 : 1, options.progress});
   view.request(current->stage, viewport, camera, time);
   if (options.offline) view.wait();
+  model::Problems failed = view.take_problems();
+  problems.insert(problems.end(), failed.begin(), failed.end());
   const GLuint texture = view.texture();
   if (texture == 0) return;
   glDisable(GL_DEPTH_TEST);

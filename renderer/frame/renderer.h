@@ -42,6 +42,7 @@ struct FrameStatistics {
 struct RendererOptions {
   bool offline =
       false; ///< every draw is complete: waits for uploads and for pictures of the reference method
+  int reference_samples = 0; ///< rays a pixel of the reference method; 0: as the show's quality says
   std::function<void(double share)> progress; ///< of a reference picture while off-line; any thread
 };
 

@@ -6,16 +6,8 @@
 
 namespace cupola::passes {
 
-const glm::dmat3& cube_face_matrix(int face) {
-  // Rows: s, t and the face's axis in terms of view axes [OpenGL 4.5 core, table 8.19].
-  using glm::dvec3;
-  const auto rows = [](dvec3 s, dvec3 t, dvec3 axis) { return glm::transpose(glm::dmat3(s, t, axis)); };
-  static const std::array matrices{
-      rows({0, 0, -1}, {0, -1, 0}, {1, 0, 0}), rows({0, 0, 1}, {0, -1, 0}, {-1, 0, 0}),
-      rows({1, 0, 0}, {0, 0, 1}, {0, 1, 0}),   rows({1, 0, 0}, {0, 0, -1}, {0, -1, 0}),
-      rows({1, 0, 0}, {0, -1, 0}, {0, 0, 1}),  rows({-1, 0, 0}, {0, -1, 0}, {0, 0, -1}),
-  };
-  return matrices[static_cast<std::size_t>(face)];
+glm::dmat3 cube_face_matrix(int face) {
+  return glm::transpose(plan::cube_face_axes()[static_cast<std::size_t>(face)]);
 }
 
 bool layered_rendering_available() { return epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array"); }

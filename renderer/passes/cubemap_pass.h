@@ -11,7 +11,7 @@ namespace cupola::passes {
 
 /// View axes to face coordinates: (s·w, t·w, w) with w the distance along the face's axis, as GL's table of
 /// cubemap faces has them. Faces are mirrored against a perspective view.
-[[nodiscard]] const glm::dmat3& cube_face_matrix(int face);
+[[nodiscard]] glm::dmat3 cube_face_matrix(int face);
 
 /// True when the driver lets a vertex shader choose the layer: faces in a single pass are possible.
 [[nodiscard]] bool layered_rendering_available();

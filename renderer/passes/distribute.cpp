@@ -169,8 +169,8 @@ private:
       weights[static_cast<int>(i)] = 1.0f;
       whole.push({triangle.view[i], weights, static_cast<std::uint8_t>(1u << i | 1u << (i + 2) % 3), 0});
     }
-    if (range.count == view_.azimuths.count())
-      each_strip_alone(triangle, whole);
+    if (range.wide)
+      each_strip_alone(triangle, whole, range);
     else
       strip_by_strip(triangle, whole, range);
   }
@@ -193,10 +193,11 @@ private:
     }
   }
 
-  /// For triangles that the axis pierces or that wrap around a gap: each strip cuts the whole.
-  void each_strip_alone(const Triangle& triangle, const Polygon& whole) {
+  /// For triangles that the axis pierces or that span nearly half a turn: each strip cuts the whole.
+  void each_strip_alone(const Triangle& triangle, const Polygon& whole, const StripRange& range) {
     Polygon half, part;
-    for (int strip = 0; strip < view_.azimuths.count(); ++strip) {
+    for (int i = 0; i < range.count; ++i) {
+      const int strip = (range.first + i) % view_.azimuths.count();
       clip(triangle, whole, tables_.borders[static_cast<std::size_t>(strip)], 1.0f, 1, half);
       if (half.count == 0) continue;
       clip(triangle, half, tables_.borders[static_cast<std::size_t>(strip) + 1], -1.0f, 2, part);

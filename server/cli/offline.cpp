@@ -14,7 +14,8 @@ void print_problems(const model::Problems& problems) {
     std::fprintf(stderr, "%s\n", model::to_text(problem).c_str());
 }
 
-model::Result<OfflineRenderer> make_offline_renderer(std::function<void(double)> progress) {
+model::Result<OfflineRenderer> make_offline_renderer(int reference_samples,
+                                                     std::function<void(double)> progress) {
   OfflineRenderer made;
   const auto report = [](outputs::MessageLevel level, std::string_view words) {
     if (level == outputs::MessageLevel::error)
@@ -26,6 +27,7 @@ model::Result<OfflineRenderer> make_offline_renderer(std::function<void(double)>
   if (auto current = made.context->make_current(); !current) return tl::unexpected(current.error());
   frame::RendererOptions options;
   options.offline = true;
+  options.reference_samples = reference_samples;
   options.progress = std::move(progress);
   auto renderer = frame::Renderer::make(options);
   if (!renderer) return tl::unexpected(renderer.error());

@@ -20,8 +20,10 @@ struct OfflineRenderer {
   std::unique_ptr<frame::Renderer> renderer;
 };
 
-/// `progress`: share of a reference picture that is done, from any thread.
-[[nodiscard]] model::Result<OfflineRenderer> make_offline_renderer(std::function<void(double)> progress = {});
+/// `reference_samples`: rays a pixel, 0 as the show's quality says. `progress`: share of a reference picture
+/// that is done, from any thread.
+[[nodiscard]] model::Result<OfflineRenderer> make_offline_renderer(int reference_samples = 0,
+                                                                   std::function<void(double)> progress = {});
 
 /// Plans the show and loads its scene, or takes `scene` over. `folder`: of relative paths in the show.
 [[nodiscard]] model::Result<std::shared_ptr<const frame::Stage>>

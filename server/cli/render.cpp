@@ -90,11 +90,7 @@ model::Problems apply(const Options& options, model::Show& show) {
       problems.push_back(bad("--cubemap-size", "from 16 to 16384, or auto", options.cubemap_size));
     }
   }
-  const bool traced = options.method == "reference";
-  if (options.samples > 0)
-    show.quality.samples = options.samples;
-  else if (traced)
-    show.quality.samples = reference_samples;
+  if (options.samples > 0) show.quality.samples = options.samples;
   return problems;
 }
 
@@ -145,7 +141,7 @@ ExitCode run(const Options& options) {
     if (!options.quiet)
       std::fprintf(stderr, "\rreference %3.0f %%%s", share * 100.0, share >= 1.0 ? "\n" : "");
   };
-  auto offline = make_offline_renderer(progress);
+  auto offline = make_offline_renderer(options.samples > 0 ? options.samples : reference_samples, progress);
   if (!offline) {
     print_problems(offline.error());
     return exit_unusable;
