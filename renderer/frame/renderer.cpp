@@ -86,7 +86,7 @@ struct Renderer::Impl {
   passes::DrawCounts draw_output(const plan::OutputPlan& output, const passes::FrameScene& scene,
                                  const plan::CameraPose& camera, double time);
   passes::DrawCounts draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
-                                 const passes::FrameScene& scene, float scale);
+                                 const passes::FrameScene& scene, int scale);
   void draw_reference(const std::string& key, const plan::ViewportPlan& viewport,
                       const plan::CameraPose& camera, double time);
 };
@@ -193,10 +193,11 @@ passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, do
 }
 
 passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
-                                               const passes::FrameScene& scene, float scale) {
+                                               const passes::FrameScene& scene, int scale) {
   const plan::PieceSet& set = *viewport.pieces;
   if (set.pieces.size() == 1 && set.pieces.front().plane_count == 0) {
-    passes::DrawCounts counts = pass.draw_direct(scene, set.pieces.front().to_screen, scale);
+    passes::DrawCounts counts =
+        pass.draw_direct(scene, set.pieces.front().to_screen, static_cast<float>(scale));
     counts.pairs = counts.triangles;
     return counts;
   }
@@ -215,7 +216,7 @@ passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const pla
     }
     engine = gpu_strips.emplace(key, std::move(*made)).first;
   }
-  return engine->second.draw(pass, scene, set, azimuths, ceiling, scale);
+  return engine->second.draw(pass, scene, set, azimuths, ceiling, static_cast<float>(scale));
 }
 
 void Renderer::Impl::draw_reference(const std::string& key, const plan::ViewportPlan& viewport,
@@ -243,7 +244,6 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
   const passes::OutputTarget& target = *current->outputs.at(output.name);
   const glm::vec3 background(current->stage->show->background);
   const int scale = target.scale();
-  const auto style_scale = static_cast<float>(scale);
   passes::DrawCounts counts;
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer());
   glDisable(GL_SCISSOR_TEST);
@@ -263,7 +263,7 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
       glClearColor(background.r, background.g, background.b, 1.0f);
       glClearDepth(0.0);
       glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-      counts += draw_pieces(key, viewport, scene, style_scale);
+      counts += draw_pieces(key, viewport, scene, scale);
       break;
     case model::Method::cubemap:
       passes::draw_lookup(fixed.lookup.id(), empty_array.id(), viewport.map, *current->cubemap);

@@ -1,11 +1,9 @@
-// The CPU engine: triangles are distributed to the strips they touch, clipped to them and projected, on all
-// cores; what comes out is drawn as it is. Pure, no GL.
-//
-// Every cut is computed from the scene's own edge with its ends in canonical order, so two triangles that
-// share an edge, and two strips that share a border, get the same bits: no holes, no overlap.
+// The CPU engine: triangles are distributed to the strips they touch and projected there, on all cores
+// [Lorenz & Döllner, sec. 2.1 and 3.1]. Nothing is cut: each strip has a scissor of its own pixels, so a
+// pixel belongs to one strip alone and no seam can open, and no edge is added that the scene does not have.
+// Pure, no GL.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
@@ -17,14 +15,13 @@
 #include "renderer/content/scene.h"
 #include "renderer/passes/draw_list.h"
 #include "renderer/passes/strip_range.h"
-#include "renderer/plan/camera.h"
 #include "renderer/plan/plan.h"
 
 namespace cupola::passes {
 
 /// 52 bytes, as the EMITTED vertex program reads it.
 struct EmittedVertex {
-  glm::vec4 clip;       ///< final clip-space position, z = near
+  glm::vec4 position;   ///< x, y and w in clip space of the viewport; z: the strip's scissor within its group
   glm::vec3 offset;     ///< from the eye, world axes, metres
   std::uint32_t normal; ///< 2_10_10_10_REV, signed normalised
   glm::vec2 uv;
@@ -32,12 +29,20 @@ struct EmittedVertex {
   glm::vec2 corner; ///< barycentric coordinates of corners 0 and 1 in the scene's triangle
 };
 
+/// Triangles of one material in one group of strips.
+struct EmittedPortion {
+  std::uint32_t material = 0;
+  std::uint32_t run = 0; ///< counts the changes of material within the batch
+  std::uint32_t group = 0;
+  std::uint32_t first_index = 0, index_count = 0;
+};
+
 /// What one task produced. Indices count from the task's own first vertex.
 struct EmittedBatch {
   std::vector<EmittedVertex> vertices;
   std::vector<std::uint32_t> indices;
-  std::vector<Run> runs; ///< in drawing order; first_index within `indices`
-  std::uint64_t pairs = 0;
+  std::vector<EmittedPortion> portions; ///< by run, then by group
+  std::uint64_t pairs = 0;              ///< (triangle, strip)
 };
 
 struct StripView {
@@ -46,7 +51,8 @@ struct StripView {
   glm::vec3 eye;
   glm::mat3 view_from_world;
   float near;
-  bool edges; ///< corners must keep their own barycentric coordinates (wireframe): nothing is shared
+  int group_size; ///< strips drawn together, each with a scissor of its own
+  bool edges;     ///< corners must keep their own barycentric coordinates (wireframe): nothing is shared
 };
 
 /// Geometry as it is this frame: moving vertices come from the pose, blended triangles stand in today's

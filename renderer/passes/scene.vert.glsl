@@ -1,10 +1,10 @@
 // Brings a vertex of the scene onto the screen, in one of four ways:
 //   DIRECT      one perspective for the whole draw: a perspective view, a face of a cubemap, one strip
 //   LAYERED     six perspectives, one per instance and layer: all faces of a cubemap
-//   EMITTED     already distributed and projected by the CPU
+//   EMITTED     already distributed and projected by the CPU; SCISSORS: a scissor for each strip of a group
 //   REPLICATED  fetched for one (triangle, piece) pair of the GPU's list, clipped by the piece's planes
 // PULLED (with DIRECT or LAYERED): corners are fetched by number, so that edges can be told apart (wireframe).
-#ifdef CUPOLA_LAYERED
+#if defined(CUPOLA_LAYERED) || defined(CUPOLA_SCISSORS)
 #extension GL_ARB_shader_viewport_layer_array : require
 #endif
 #include "renderer/shaders/frame.glsl"
@@ -20,7 +20,7 @@ out vec3 v_corner; // barycentric coordinates in the scene's own triangle
 #endif
 
 #ifdef CUPOLA_EMITTED
-layout(location = 0) in vec4 in_clip;
+layout(location = 0) in vec4 in_position; // x, y, scissor, w
 layout(location = 1) in vec3 in_offset;
 layout(location = 2) in vec3 in_normal;
 layout(location = 3) in vec2 in_uv;
@@ -53,7 +53,10 @@ void main() {
 #ifdef CUPOLA_EDGES
   v_corner = vec3(in_corner, 1.0 - in_corner.x - in_corner.y);
 #endif
-  gl_Position = in_clip;
+  gl_Position = vec4(in_position.xy, frame.eye_near.w, in_position.w);
+#ifdef CUPOLA_SCISSORS
+  gl_ViewportIndex = int(in_position.z);
+#endif
 #else
 
 #ifdef CUPOLA_PULL

@@ -11,6 +11,8 @@ namespace cupola::passes {
 
 namespace {
 
+constexpr int max_group = 16; // scissors that OpenGL 4.5 guarantees
+
 bool is_blended(const FrameScene& scene, std::uint32_t material) {
   return scene.gpu.scene().materials[material].alpha_mode == content::AlphaMode::blend;
 }
@@ -72,7 +74,7 @@ ScenePass::ScenePass(ScenePrograms& programs)
     glVertexArrayAttribFormat(array, index, size, type, normalised, static_cast<GLuint>(offset));
     glVertexArrayAttribBinding(array, index, 0);
   };
-  attribute(0, 4, GL_FLOAT, GL_FALSE, offsetof(EmittedVertex, clip));
+  attribute(0, 4, GL_FLOAT, GL_FALSE, offsetof(EmittedVertex, position));
   attribute(1, 3, GL_FLOAT, GL_FALSE, offsetof(EmittedVertex, offset));
   attribute(2, 4, GL_INT_2_10_10_10_REV, GL_TRUE, offsetof(EmittedVertex, normal));
   attribute(3, 2, GL_FLOAT, GL_FALSE, offsetof(EmittedVertex, uv));
@@ -166,47 +168,107 @@ DrawCounts ScenePass::draw_layered(const FrameScene& scene, const std::array<glm
   return counts;
 }
 
-DrawCounts ScenePass::draw_batches(const FrameScene& scene, const std::vector<EmittedBatch>& batches,
-                                   float style_scale) {
-  std::vector<std::size_t> vertex_start, index_start;
-  std::size_t vertices = 0, indices = 0;
-  DrawCounts counts;
-  for (const EmittedBatch& batch : batches) {
-    vertex_start.push_back(vertices);
-    index_start.push_back(indices);
-    vertices += batch.vertices.size();
-    indices += batch.indices.size();
-    counts.pairs += batch.pairs;
+namespace {
+
+/// Portions of all batches that are drawn together: one material, one group of strips.
+struct EmittedDraw {
+  std::uint32_t material, group;
+  std::size_t first_index, index_count;
+};
+
+/// Where a portion's indices go.
+struct Move {
+  std::size_t batch, portion, to;
+};
+
+/// Joins the portions of neighbouring batches: by run over all batches, then by group. Inside a group the
+/// order of the batches is kept.
+std::vector<EmittedDraw> arrange(const std::vector<EmittedBatch>& batches, std::vector<Move>& moves) {
+  struct Key {
+    std::uint32_t run, group;
+    std::size_t batch, portion;
+    auto operator<=>(const Key&) const = default;
+  };
+  std::vector<Key> keys;
+  std::uint32_t run = 0, last_material = ~0u;
+  for (std::size_t batch = 0; batch < batches.size(); ++batch) {
+    std::uint32_t last_run = ~0u;
+    for (std::size_t i = 0; i < batches[batch].portions.size(); ++i) {
+      const EmittedPortion& portion = batches[batch].portions[i];
+      if (portion.run != last_run && portion.material != last_material) ++run;
+      last_run = portion.run;
+      last_material = portion.material;
+      keys.push_back({run, portion.group, batch, i});
+    }
   }
+  std::sort(keys.begin(), keys.end());
+  std::vector<EmittedDraw> draws;
+  std::size_t to = 0;
+  const Key* before = nullptr;
+  for (const Key& key : keys) {
+    const EmittedPortion& portion = batches[key.batch].portions[key.portion];
+    if (!before || before->run != key.run || before->group != key.group)
+      draws.push_back({portion.material, portion.group, to, 0});
+    draws.back().index_count += portion.index_count;
+    moves.push_back({key.batch, key.portion, to});
+    to += portion.index_count;
+    before = &key;
+  }
+  return draws;
+}
+
+} // namespace
+
+std::vector<std::size_t> ScenePass::upload_vertices(const std::vector<EmittedBatch>& batches) {
+  std::vector<std::size_t> starts;
+  std::size_t vertices = 0;
+  for (const EmittedBatch& batch : batches) {
+    starts.push_back(vertices);
+    vertices += batch.vertices.size();
+  }
+  auto* to = reinterpret_cast<EmittedVertex*>(emitted_vertices_.begin(vertices * sizeof(EmittedVertex)));
+  tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t i) {
+    std::copy(batches[i].vertices.begin(), batches[i].vertices.end(), to + starts[i]);
+  });
+  return starts;
+}
+
+DrawCounts ScenePass::draw_batches(const FrameScene& scene, const std::vector<EmittedBatch>& batches,
+                                   const StripTarget& target) {
+  DrawCounts counts;
+  std::vector<Move> moves;
+  const std::vector<EmittedDraw> draws = arrange(batches, moves);
+  if (draws.empty()) return counts;
+  const std::size_t indices = draws.back().first_index + draws.back().index_count;
+  for (const EmittedBatch& batch : batches) counts.pairs += batch.pairs;
   counts.triangles = indices / 3;
-  if (indices == 0) return counts;
-  auto* to_vertices =
-      reinterpret_cast<EmittedVertex*>(emitted_vertices_.begin(vertices * sizeof(EmittedVertex)));
+
+  const std::vector<std::size_t> starts = upload_vertices(batches);
   auto* to_indices =
       reinterpret_cast<std::uint32_t*>(emitted_indices_.begin(indices * sizeof(std::uint32_t)));
-  tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t i) {
-    const EmittedBatch& batch = batches[i];
-    std::copy(batch.vertices.begin(), batch.vertices.end(), to_vertices + vertex_start[i]);
-    const auto base = static_cast<std::uint32_t>(vertex_start[i]);
-    std::transform(batch.indices.begin(), batch.indices.end(), to_indices + index_start[i],
+  tbb::parallel_for(std::size_t{0}, moves.size(), [&](std::size_t i) {
+    const Move& move = moves[i];
+    const EmittedPortion& portion = batches[move.batch].portions[move.portion];
+    const std::uint32_t* from = batches[move.batch].indices.data() + portion.first_index;
+    const auto base = static_cast<std::uint32_t>(starts[move.batch]);
+    std::transform(from, from + portion.index_count, to_indices + move.to,
                    [base](std::uint32_t index) { return index + base; });
   });
-  std::vector<Run> runs;
-  for (std::size_t i = 0; i < batches.size(); ++i)
-    for (const Run& run : batches[i].runs) {
-      const auto first = static_cast<std::uint32_t>(index_start[i]) + run.first_index;
-      if (!runs.empty() && runs.back().material == run.material)
-        runs.back().index_count += run.index_count;
-      else
-        runs.push_back({run.material, first, run.index_count});
-    }
+
   glBindVertexArray(emitted_array_.id());
   glVertexArrayVertexBuffer(emitted_array_.id(), 0, emitted_vertices_.id(), 0, sizeof(EmittedVertex));
   glVertexArrayElementBuffer(emitted_array_.id(), emitted_indices_.id());
-  for (const Run& run : runs) {
-    bind_program(scene, VertexPath::emitted, run.material, style_scale, {}, {});
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(run.index_count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(run.first_index * sizeof(std::uint32_t)));
+  std::uint32_t bound = ~0u;
+  for (const EmittedDraw& draw : draws) {
+    if (draw.material != bound)
+      bind_program(scene, VertexPath::emitted, draw.material, static_cast<float>(target.scale), {}, {});
+    bound = draw.material;
+    const std::size_t first = std::size_t{draw.group} * 4 * static_cast<std::size_t>(target.group_size);
+    const std::size_t count =
+        std::min(static_cast<std::size_t>(target.group_size), (target.scissors.size() - first) / 4);
+    glScissorArrayv(0, static_cast<GLsizei>(count), target.scissors.data() + first);
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(draw.index_count), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t)));
   }
   emitted_vertices_.finish();
   emitted_indices_.finish();
@@ -214,12 +276,21 @@ DrawCounts ScenePass::draw_batches(const FrameScene& scene, const std::vector<Em
 }
 
 DrawCounts ScenePass::draw_strips_cpu(const FrameScene& scene, const plan::PieceSet& set,
-                                      const StripAzimuths& azimuths, std::uint64_t max_pairs,
-                                      float style_scale) {
+                                      const StripAzimuths& azimuths, std::uint64_t max_pairs, int scale) {
   set_front_face(set.pieces.front().to_screen);
-  const StripView view{set,        azimuths,
-                       scene.eye,  scene.view_from_world,
-                       scene.near, scene.style == model::StyleKind::wireframe};
+  StripTarget target{scale, per_strip_scissors() ? max_group : 1, {}};
+  std::array<GLint, 4> viewport{};
+  glGetIntegerv(GL_VIEWPORT, viewport.data());
+  for (const plan::Piece& piece : set.pieces)
+    target.scissors.insert(target.scissors.end(),
+                           {piece.bounds.x * scale, viewport[1], piece.bounds.width * scale, viewport[3]});
+  const StripView view{set,
+                       azimuths,
+                       scene.eye,
+                       scene.view_from_world,
+                       scene.near,
+                       target.group_size,
+                       scene.style == model::StyleKind::wireframe};
   DrawCounts counts;
   // In portions: memory stays below the ceiling, and nothing is ever missing.
   const std::uint64_t worst_portion = std::max<std::uint64_t>(max_pairs / 8, 1);
@@ -231,7 +302,7 @@ DrawCounts ScenePass::draw_strips_cpu(const FrameScene& scene, const plan::Piece
       while (take < left.size() && (take == 0 || triangles < worst_portion))
         triangles += left[take++].index_count / 3;
       distribute_strips(scene.geometry, left.first(take), view, batches_);
-      counts += draw_batches(scene, batches_, style_scale);
+      counts += draw_batches(scene, batches_, target);
       left = left.subspan(take);
     }
   }

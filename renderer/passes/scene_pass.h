@@ -76,10 +76,11 @@ public:
   DrawCounts draw_layered(const FrameScene& scene, const std::array<glm::dmat3, 6>& to_screen,
                           std::span<const int> layers, float style_scale);
 
-  /// Strips by the CPU engine. Large scenes go through in portions, so that memory stays bounded by about
+  /// Strips by the CPU engine, into the current GL viewport; `scale`: target pixels per output pixel. The
+  /// scissor is left undefined. Large scenes go through in portions, so that memory stays bounded by about
   /// `max_pairs` pairs and nothing is ever missing.
   DrawCounts draw_strips_cpu(const FrameScene& scene, const plan::PieceSet& set,
-                             const StripAzimuths& azimuths, std::uint64_t max_pairs, float style_scale);
+                             const StripAzimuths& azimuths, std::uint64_t max_pairs, int scale);
 
   void bind_program(const FrameScene& scene, VertexPath path, std::uint32_t material, float style_scale,
                     std::span<const glm::mat3> to_screen, std::span<const int> layers);
@@ -87,8 +88,15 @@ public:
 private:
   DrawCounts draw_items(const FrameScene& scene, std::span<const DrawItem> items, const glm::dmat3& to_screen,
                         float style_scale);
+  struct StripTarget {
+    int scale;
+    int group_size;              ///< strips of one draw
+    std::vector<GLint> scissors; ///< x, y, width, height of each strip
+  };
   DrawCounts draw_batches(const FrameScene& scene, const std::vector<EmittedBatch>& batches,
-                          float style_scale);
+                          const StripTarget& target);
+  /// Copies the vertices of all batches; where each batch's first one is.
+  std::vector<std::size_t> upload_vertices(const std::vector<EmittedBatch>& batches);
 
   ScenePrograms& programs_;
   gl::VertexArray emitted_array_, empty_array_;

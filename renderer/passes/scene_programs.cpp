@@ -22,6 +22,7 @@ std::vector<std::string> defines_of(VertexPath path, model::StyleKind style, boo
   for (std::size_t bit = 0; bit < feature_names.size(); ++bit)
     if (features & (1u << bit)) defines.emplace_back(feature_names[bit]);
   if (lights) defines.emplace_back("CUPOLA_LIGHTS");
+  if (path == VertexPath::emitted && per_strip_scissors()) defines.emplace_back("CUPOLA_SCISSORS");
   const bool edges = style == model::StyleKind::wireframe;
   if (edges) defines.emplace_back("CUPOLA_EDGES");
   if (style == model::StyleKind::hatching) defines.emplace_back("CUPOLA_HATCHING");
@@ -32,6 +33,8 @@ std::vector<std::string> defines_of(VertexPath path, model::StyleKind style, boo
 }
 
 } // namespace
+
+bool per_strip_scissors() { return epoxy_has_gl_extension("GL_ARB_shader_viewport_layer_array"); }
 
 GLuint ScenePrograms::get(VertexPath path, model::StyleKind style, bool lights, std::uint32_t features) {
   const std::uint32_t key = features | static_cast<std::uint32_t>(lights) << 16 |

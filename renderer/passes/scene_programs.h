@@ -14,6 +14,10 @@ namespace cupola::passes {
 /// How vertices reach the screen; see scene.vert.glsl.
 enum class VertexPath : std::uint8_t { direct, layered, emitted, replicated };
 
+/// The driver lets a vertex program choose among 16 scissors, so 16 strips go into one draw; without, each
+/// strip is a draw of its own.
+[[nodiscard]] bool per_strip_scissors();
+
 class ScenePrograms {
 public:
   /// `features`: MaterialFeature bits; `lights`: the scene has punctual lights.

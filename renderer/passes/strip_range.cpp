@@ -41,8 +41,6 @@ StripAzimuths::StripAzimuths(const plan::PieceSet& set, const glm::dmat3& axes)
   const float middle = (borders_.front() + borders_.back()) / 2.0f;
   const float turns = std::round(middle / turn) * turn;
   for (float& border : borders_) border -= turns;
-  for (std::size_t i = 1; i < borders_.size(); ++i)
-    widest_ = std::max(widest_, borders_[i] - borders_[i - 1]);
   full_turn_ = borders_.back() - borders_.front() > turn - 1e-4f;
 }
 
@@ -76,11 +74,9 @@ StripRange StripAzimuths::triangle(float a, float b, float c) const {
   const float ab = short_turn(b - a), bc = short_turn(c - b), ca = short_turn(a - c);
   const float longest = std::max({std::abs(ab), std::abs(bc), std::abs(ca)});
   if (std::abs(ab + bc + ca) > pi || longest > pi - 1e-3f)
-    return {0, count(), true}; // pierced by the axis, or nearly
+    return {0, count()}; // pierced by the axis, or nearly
   const float low = std::min({0.0f, ab, ab + bc}), high = std::max({0.0f, ab, ab + bc});
-  StripRange range = between(a + low - margin, a + high + margin);
-  range.wide = high - low + widest_ > pi - 2e-3f || range.count == count();
-  return range;
+  return between(a + low - margin, a + high + margin);
 }
 
 StripRange StripAzimuths::sphere(const glm::vec3& center, float radius) const {

@@ -13,9 +13,6 @@ namespace cupola::passes {
 /// Strips first … first + count − 1, counted modulo the number of strips.
 struct StripRange {
   int first = 0, count = 0;
-  /// The triangle and a strip more span half a turn or more: a border's plane has parts of it on the wrong
-  /// side.
-  bool wide = false;
 };
 
 /// The strips of a viewport as intervals of azimuth about the cylinder's axis, seen from the eye.
@@ -45,7 +42,6 @@ private:
   glm::mat3 axes_from_view_;
   std::vector<float> borders_;
   bool full_turn_ = false;
-  float widest_ = 0.0f; ///< strip, radians
 };
 
 } // namespace cupola::passes

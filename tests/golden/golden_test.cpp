@@ -86,28 +86,30 @@ TEST_CASE("both engines draw the same pieces") {
     const auto cpu_pairs = last_statistics().replicated;
     show.pieces.engine = model::Engine::gpu;
     for (int i = 0; i < 2; ++i) CHECK(psnr(cpu, draw(show)) > 50.0);
-    // The GPU's counts are read back a frame late; by then both have distributed to the same strips.
+    // The GPU's counts are read back a frame late. It takes strips by azimuth alone; the CPU also leaves out what
+    // is above or below the picture.
     static_cast<void>(draw(show));
-    CHECK(static_cast<double>(last_statistics().replicated) ==
-          doctest::Approx(static_cast<double>(cpu_pairs)).epsilon(0.01));
+    const auto gpu_pairs = last_statistics().replicated;
+    MESSAGE(it.name << ": pairs of the CPU " << cpu_pairs << ", of the GPU " << gpu_pairs);
+    CHECK(gpu_pairs >= cpu_pairs);
+    CHECK(gpu_pairs < cpu_pairs * 2);
   }
 }
 
-TEST_CASE("a list too short for its pairs loses nothing") {
+TEST_CASE("with too little memory for its pairs an engine loses nothing") {
   const Case it = cases()[1];
   model::Show show = show_of(it, model::Method::piecewise);
-  show.pieces.engine = model::Engine::gpu;
-  const Shot whole = draw(show);
+  const Shot wanted = draw(show);
   show.pieces.max_replicated = 1000;
-  show.quality.samples = 1;
-  model::Show plain = show;
-  plain.pieces.max_replicated = 10'000'000;
-  // The list has the size of the largest frame so far: a renderer of its own starts with a short one.
-  const Shot wanted = draw(plain);
-  plain.pieces.engine = model::Engine::cpu;
-  plain.pieces.max_replicated = 1000;
-  CHECK(psnr(draw(plain), wanted) > 50.0);
-  CHECK(whole.width == wanted.width);
+  for (const model::Engine engine : {model::Engine::cpu, model::Engine::gpu}) {
+    show.pieces.engine = engine;
+    // A viewport of another name has an engine of its own, whose list has not grown yet.
+    auto& viewports = show.outputs["main"].viewports;
+    const model::Viewport viewport = viewports.begin()->second;
+    viewports = {{"short", viewport}};
+    for (int frame = 0; frame < 3; ++frame) CHECK(psnr(draw(show), wanted) > 50.0);
+    CHECK(last_statistics().replicated > 1000);
+  }
 }
 
 TEST_CASE("styles keep their widths in output pixels") {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <random>
 #include <vector>
 
@@ -39,6 +40,8 @@ Soup random_soup(unsigned seed, int triangles) {
   return soup;
 }
 
+constexpr int group_size = 16;
+
 struct Distributed {
   plan::PieceSet set;
   std::vector<passes::EmittedBatch> batches;
@@ -52,31 +55,32 @@ Distributed distribute(const Soup& soup, double fov, bool edges) {
   geometry.indices = soup.indices;
   geometry.materials = soup.materials;
   const std::vector<passes::DrawItem> items{{0, 0, static_cast<std::uint32_t>(soup.indices.size())}};
-  const passes::StripView view{cylinder.set, azimuths, glm::vec3(0.0f), glm::mat3(1.0f), 0.05f, edges};
+  const passes::StripView view{cylinder.set, azimuths, glm::vec3(0.0f), glm::mat3(1.0f), 0.05f,
+                               group_size,   edges};
   Distributed made{cylinder.set, {}};
   passes::distribute_strips(geometry, items, view, made.batches);
   return made;
 }
 
-bool inside(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-  const auto side = [&p](const glm::dvec2& o, const glm::dvec2& q) {
-    return (q.x - o.x) * (p.y - o.y) - (q.y - o.y) * (p.x - o.x);
-  };
-  const double ab = side(a, b), bc = side(b, c), ca = side(c, a);
-  return (ab >= -1e-9 && bc >= -1e-9 && ca >= -1e-9) || (ab <= 1e-9 && bc <= 1e-9 && ca <= 1e-9);
-}
-
-bool covered(const Distributed& result, const glm::dvec2& point) {
+/// Some triangle emitted for this strip shows the point, which is in clip space with w > 0. Edge functions in
+/// homogeneous coordinates: corners may lie behind the eye.
+bool covered(const Distributed& result, std::size_t strip, const glm::dvec3& point) {
   for (const passes::EmittedBatch& batch : result.batches)
-    for (std::size_t i = 0; i + 2 < batch.indices.size(); i += 3) {
-      std::array<glm::dvec2, 3> corner;
-      bool before = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const glm::vec4& clip = batch.vertices[batch.indices[i + k]].clip;
-        before = before && clip.w > 1e-3f;
-        corner[k] = {clip.x / clip.w, clip.y / clip.w};
+    for (const passes::EmittedPortion& portion : batch.portions) {
+      if (portion.group != strip / group_size) continue;
+      for (std::uint32_t i = 0; i < portion.index_count; i += 3) {
+        glm::dmat3 corners;
+        bool same_strip = true;
+        for (int k = 0; k < 3; ++k) {
+          const glm::vec4& p =
+              batch.vertices[batch.indices[portion.first_index + i + static_cast<std::uint32_t>(k)]].position;
+          same_strip = same_strip && static_cast<std::size_t>(p.z) == strip % group_size;
+          corners[k] = glm::dvec3(p.x, p.y, p.w);
+        }
+        if (!same_strip || glm::determinant(corners) == 0.0) continue;
+        const glm::dvec3 weights = glm::inverse(corners) * point;
+        if (weights.x >= -1e-6 && weights.y >= -1e-6 && weights.z >= -1e-6) return true;
       }
-      if (before && inside(point, corner[0], corner[1], corner[2])) return true;
     }
   return false;
 }
@@ -99,21 +103,20 @@ TEST_CASE("what a piece's own perspective shows of a triangle is covered by what
       const glm::dvec3 p0(soup.vertices[t].position), p1(soup.vertices[t + 1].position),
           p2(soup.vertices[t + 2].position);
       const glm::dvec3 v = p0 + a * (p1 - p0) + b * (p2 - p0);
-      for (const plan::Piece& piece : result.set.pieces) {
+      for (std::size_t strip = 0; strip < result.set.pieces.size(); ++strip) {
+        const plan::Piece& piece = result.set.pieces[strip];
         if (glm::dot(piece.planes[0], v) < 1e-4 || glm::dot(piece.planes[1], v) < 1e-4) continue;
         const glm::dvec3 h = piece.to_screen * v;
         if (h.z < 0.06 || std::abs(h.y) > 0.99 * h.z) continue;
-        CHECK(covered(result, {h.x / h.z, h.y / h.z}));
+        CHECK(covered(result, strip, h));
         ++checked;
       }
     }
     CHECK(checked > 30);
-    for (const passes::EmittedBatch& batch : result.batches)
-      for (const passes::EmittedVertex& vertex : batch.vertices) CHECK(vertex.clip.w > -1e-4f);
   }
 }
 
-TEST_CASE("two triangles that share an edge meet in the same bits") {
+TEST_CASE("sharing joins corners of neighbours and moves none") {
   Soup soup;
   soup.materials[0].double_sided = true;
   soup.vertices = {at(-3.1f, -1.2f, -2.3f), at(2.7f, 1.9f, -3.4f), at(-2.2f, 2.6f, -2.9f),
@@ -122,12 +125,11 @@ TEST_CASE("two triangles that share an edge meet in the same bits") {
   const Distributed apart = distribute(soup, 360.0, true);
   const Distributed shared = distribute(soup, 360.0, false);
   REQUIRE(apart.batches.size() == 1);
-  // Sharing joins exactly what has the same position: it removes vertices and moves none.
   const passes::EmittedBatch &a = apart.batches[0], &b = shared.batches[0];
   REQUIRE(b.indices.size() == a.indices.size());
   CHECK(b.vertices.size() < a.vertices.size());
   for (std::size_t i = 0; i < a.indices.size(); ++i)
-    CHECK(a.vertices[a.indices[i]].clip == b.vertices[b.indices[i]].clip);
+    CHECK(a.vertices[a.indices[i]].position == b.vertices[b.indices[i]].position);
 }
 
 TEST_CASE("back faces of single-sided materials are left out") {
@@ -137,4 +139,35 @@ TEST_CASE("back faces of single-sided materials are left out") {
   CHECK(distribute(soup, 180.0, false).batches[0].pairs > 0);
   soup.indices = {0, 2, 1};
   CHECK(distribute(soup, 180.0, false).batches[0].pairs == 0);
+}
+
+TEST_CASE("portions hold whole triangles of one material, by run and then by group") {
+  Soup soup = random_soup(9, 60);
+  soup.materials.push_back(soup.materials.front());
+  const tests::CylinderView cylinder = tests::cylinder_view(360.0, 120.0);
+  const passes::StripAzimuths azimuths(cylinder.set, cylinder.map.orientation);
+  passes::FrameGeometry geometry;
+  geometry.still = soup.vertices;
+  geometry.indices = soup.indices;
+  geometry.materials = soup.materials;
+  const std::vector<passes::DrawItem> items{{0, 0, 60}, {1, 60, 60}, {0, 120, 60}};
+  const passes::StripView view{cylinder.set, azimuths, glm::vec3(0.0f), glm::mat3(1.0f), 0.05f,
+                               group_size,   false};
+  std::vector<passes::EmittedBatch> batches;
+  passes::distribute_strips(geometry, items, view, batches);
+  REQUIRE(batches.size() == 1);
+  std::uint32_t next = 0, run = 0, last_group = 0;
+  for (const passes::EmittedPortion& portion : batches[0].portions) {
+    CHECK(portion.first_index == next);
+    CHECK(portion.index_count % 3 == 0);
+    CHECK(portion.material == (portion.run == 1 ? 1u : 0u));
+    if (portion.run == run) CHECK(portion.group >= last_group);
+    CHECK(portion.run >= run);
+    run = portion.run;
+    last_group = portion.group;
+    next += portion.index_count;
+  }
+  CHECK(next == batches[0].indices.size());
+  CHECK(run == 2);
+  CHECK(batches[0].pairs == batches[0].indices.size() / 3);
 }
