@@ -86,8 +86,8 @@ TEST_CASE("both engines draw the same pieces") {
     const auto cpu_pairs = last_statistics().replicated;
     show.pieces.engine = model::Engine::gpu;
     for (int i = 0; i < 2; ++i) CHECK(psnr(cpu, draw(show)) > 50.0);
-    // The GPU's counts are read back a frame late. It takes strips by azimuth alone; the CPU also leaves out what
-    // is above or below the picture.
+    // The GPU's counts are read back a frame late. It takes strips by azimuth alone; the CPU also leaves out
+    // what is above or below the picture.
     static_cast<void>(draw(show));
     const auto gpu_pairs = last_statistics().replicated;
     MESSAGE(it.name << ": pairs of the CPU " << cpu_pairs << ", of the GPU " << gpu_pairs);
