@@ -35,7 +35,7 @@ struct Rule {
   const char* refers = nullptr;              ///< list that an index points into; null: any
   const std::vector<Rule>* inside = nullptr; ///< of an object, or of each object of a list
   std::size_t length = 0;                    ///< of a list of numbers; 0: any
-  std::vector<std::string> words;            ///< of a word: those that there are
+  std::vector<std::string> words = {};       ///< of a word: those that there are
 };
 using Rules = std::vector<Rule>;
 

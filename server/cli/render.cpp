@@ -19,7 +19,7 @@ constexpr int reference_samples = 64; // a pixel, unless told otherwise
 
 struct Options {
   std::string show, output, method, frames, size, cubemap_size, target;
-  int samples = 0;
+  int samples = 0, supersampling = 0, anisotropy = 0; ///< 0: as the show says
   bool quiet = false;
 };
 
@@ -91,6 +91,8 @@ model::Problems apply(const Options& options, model::Show& show) {
     }
   }
   if (options.samples > 0) show.quality.samples = options.samples;
+  if (options.supersampling > 0) show.quality.supersampling = options.supersampling;
+  if (options.anisotropy > 0) show.quality.anisotropy = options.anisotropy;
   return problems;
 }
 
@@ -189,6 +191,14 @@ void add_render(CLI::App& app, ExitCode& exit_code) {
       ->type_name("N");
   command->add_option("--samples", options->samples, "Samples a pixel (the reference's are 64 unless told)")
       ->check(CLI::Range(1, 4096))
+      ->type_name("N");
+  command
+      ->add_option("--supersampling", options->supersampling,
+                   "Drawn so many times as wide and high, then averaged")
+      ->check(CLI::Range(1, 8))
+      ->type_name("K");
+  command->add_option("--anisotropy", options->anisotropy, "Of texture filtering")
+      ->check(CLI::Range(1, 16))
       ->type_name("N");
   command->add_flag("--quiet", options->quiet, "Prints nothing but problems");
   command->callback([options, &exit_code] { exit_code = run(*options); });
