@@ -8,7 +8,6 @@
 namespace cupola::content::gltf {
 namespace {
 
-
 glm::vec3 vec3(const std::vector<double>& v, const glm::vec3& fallback) {
   if (v.size() != 3) return fallback;
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
