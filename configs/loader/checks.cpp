@@ -15,6 +15,7 @@
 namespace cupola::loader {
 
 using model::Code;
+using model::escaped;
 using model::Problem;
 using model::Severity;
 using model::Show;

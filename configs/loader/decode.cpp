@@ -12,6 +12,7 @@
 namespace cupola::loader {
 
 using model::Code;
+using model::escaped;
 using model::Kind;
 using model::Parameter;
 using model::Type;

@@ -14,21 +14,9 @@
 namespace cupola::loader {
 
 using model::Code;
+using model::escaped;
 using model::Position;
 using model::Problem;
-
-std::string escaped(std::string_view key) {
-  std::string out;
-  for (const char c : key) {
-    if (c == '~')
-      out += "~0";
-    else if (c == '/')
-      out += "~1";
-    else
-      out += c;
-  }
-  return out;
-}
 
 namespace {
 

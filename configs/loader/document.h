@@ -28,7 +28,4 @@ struct Document {
 /// Fails with one located problem where the text is not JSON, not UTF-8, or beyond a bound.
 [[nodiscard]] model::Result<Document> read_document(std::string_view text, const std::string& name);
 
-/// The key as a part of a JSON pointer (RFC 6901).
-[[nodiscard]] std::string escaped(std::string_view key);
-
 } // namespace cupola::loader

@@ -46,8 +46,6 @@ std::string_view cost_name(Cost cost) {
   return "";
 }
 
-namespace {
-
 std::string escaped(std::string_view key) {
   std::string out;
   for (const char c : key) {
@@ -60,6 +58,8 @@ std::string escaped(std::string_view key) {
   }
   return out;
 }
+
+namespace {
 
 std::string unescaped(std::string_view token) {
   std::string out;

@@ -96,6 +96,9 @@ struct Type {
   std::function<void*(void* self, std::size_t index)> activate; ///< holds that alternative, with defaults
 };
 
+/// A key as one reference token of a JSON pointer (RFC 6901): ~ becomes ~0 and / becomes ~1.
+[[nodiscard]] std::string escaped(std::string_view key);
+
 /// The root: the description of Show.
 [[nodiscard]] const Type& show_type();
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <tuple>
 
 namespace cupola::passes {
 
@@ -65,7 +66,9 @@ void order_for_eye(const content::Scene& scene, std::span<const content::Cluster
     int shell;
     std::uint32_t material;
     std::size_t cluster;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(shell, material, cluster) < std::tie(other.shell, other.material, other.cluster);
+    }
   };
   std::vector<Key> keys;
   keys.reserve(clusters.size());

@@ -6,6 +6,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <tbb/parallel_for.h>
+#include <tuple>
 
 namespace cupola::passes {
 
@@ -187,7 +188,10 @@ std::vector<EmittedDraw> arrange(const std::vector<EmittedBatch>& batches, std::
   struct Key {
     std::uint32_t run, group;
     std::size_t batch, portion;
-    auto operator<=>(const Key&) const = default;
+    bool operator<(const Key& other) const {
+      return std::tie(run, group, batch, portion) <
+             std::tie(other.run, other.group, other.batch, other.portion);
+    }
   };
   std::vector<Key> keys;
   std::uint32_t run = 0, last_material = ~0u;

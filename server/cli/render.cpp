@@ -108,7 +108,7 @@ model::Result<FrameRange> parse_frames(const std::string& text) {
 /// One picture goes to the file named; several go into a folder, numbered and named by output.
 std::filesystem::path file_of(const Options& options, const FrameRange& range, bool several_outputs,
                               const std::string& output, long frame) {
-  const std::filesystem::path target(options.target);
+  std::filesystem::path target(options.target);
   if (!range.given && !several_outputs && target.has_extension()) return target;
   char number[32];
   std::snprintf(number, sizeof number, "_%06ld", frame);
