@@ -133,7 +133,7 @@ control::Services services_of(frame::Loop& loop, const Faults& faults) {
   services.status = [&] { return status_json(loop.status(), faults.now()); };
   services.snapshot = [&loop](const std::string& output,
                               std::function<void(model::Result<control::RgbPicture>)> deliver) {
-    loop.snapshot(output, std::nullopt, [deliver](model::Result<frame::Snapshot> got) {
+    loop.snapshot(output, std::nullopt, [deliver = std::move(deliver)](model::Result<frame::Snapshot> got) {
       if (got)
         deliver(control::RgbPicture{got->width, got->height, std::move(got->rgb)});
       else

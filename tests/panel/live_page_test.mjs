@@ -36,7 +36,7 @@ try {
   // A tile for each output, with a picture of the right shape and the right colour.
   const red = name => page.evaluate(which => {
     const image = document.querySelector(`figure[data-output="${which}"] img`);
-    if (!image.naturalWidth) return null;
+    if (!image?.naturalWidth) return null; // no tile yet, or no picture in it
     const canvas = document.createElement("canvas");
     canvas.width = canvas.height = 1;
     const context = canvas.getContext("2d");

@@ -18,11 +18,11 @@ cli::OfflineRenderer& renderer() {
   return *made;
 }
 
-model::Show make_show(model::Content content, model::Projection projection, model::Method method, int width,
-                      int height) {
+model::Show make_show(model::Content content, const model::Projection& projection, model::Method method,
+                      int width, int height) {
   model::Show show;
   show.scene.content = std::move(content);
-  show.projections["it"] = std::move(projection);
+  show.projections["it"] = projection;
   model::Output output;
   output.sink = model::HeadlessOutput{};
   output.width = width;

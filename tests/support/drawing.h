@@ -15,7 +15,7 @@ namespace cupola::tests {
 [[nodiscard]] cli::OfflineRenderer& renderer();
 
 /// A show with one output "main" of one viewport "all" that shows `projection` with `method`.
-[[nodiscard]] model::Show make_show(model::Content content, model::Projection projection,
+[[nodiscard]] model::Show make_show(model::Content content, const model::Projection& projection,
                                     model::Method method, int width, int height);
 
 /// The first picture of the show at `time`. Keeps the scene of the last call when the content is the same.

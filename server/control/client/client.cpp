@@ -32,7 +32,7 @@ public:
     request_ = std::move(request);
     answer_.body_limit(64ULL << 20);
     resolver_.async_resolve(
-        url_.host, url_.port, [this](error_code error, tcp::resolver::results_type found) {
+        url_.host, url_.port, [this](error_code error, const tcp::resolver::results_type& found) {
           if (failed(error)) return;
           stream_.expires_after(timeout_);
           stream_.async_connect(found, [this](error_code connect_error, const tcp::endpoint&) {

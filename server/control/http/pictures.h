@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include "configs/model/problem.h"
 #include "server/control/http/picture.h"
@@ -22,7 +23,9 @@ struct PictureKey {
   std::string output;
   PictureFormat format = PictureFormat::png;
   int width = 0; ///< pixels, 0: as rendered
-  auto operator<=>(const PictureKey&) const = default;
+  bool operator<(const PictureKey& other) const {
+    return std::tie(output, format, width) < std::tie(other.output, other.format, other.width);
+  }
 };
 
 /// Any thread. Owns the thread "encode".

@@ -243,7 +243,7 @@ void Routes::Impl::picture(const Target& target, const std::string& file, const 
   if ((ending != ".png" && ending != ".jpg") || !now->show->outputs.contains(key.output)) {
     std::string known;
     for (const auto& [name, output] : now->show->outputs)
-      known += (known.empty() ? "" : ", ") + name + ".png, " + name + ".jpg";
+      known.append(known.empty() ? "" : ", ").append(name).append(".png, ").append(name).append(".jpg");
     return respond(refused(404, Code::unknown_resource, "one of " + known, '"' + file + '"'));
   }
   if (const auto asked = target.query.find("width"); asked != target.query.end()) {

@@ -68,7 +68,8 @@ void walk(const Type& type, void* self, const std::string& at, const Visit& visi
         walk(*row.type, const_cast<void*>(row.nested(owner)), here, visit);
       else if (row.kind == Kind::map || row.kind == Kind::list)
         for (const std::string& key : row.keys(owner))
-          walk(*row.type, const_cast<void*>(row.entry(owner, key)), here + '/' + key, visit);
+          walk(*row.type, const_cast<void*>(row.entry(owner, key)), std::string(here).append("/").append(key),
+               visit);
     }
   };
   if (!type.alternatives.empty())

@@ -39,7 +39,7 @@ std::filesystem::path gltf_folder() {
 }
 
 std::filesystem::path write_bytes(const std::string& name, const std::vector<std::uint8_t>& bytes) {
-  const std::filesystem::path file = gltf_folder() / name;
+  std::filesystem::path file = gltf_folder() / name;
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return file;

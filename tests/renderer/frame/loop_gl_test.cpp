@@ -94,7 +94,8 @@ struct Running {
   model::Result<frame::Snapshot> picture(const std::string& output, std::optional<int> width = {}) {
     auto promise = std::make_shared<std::promise<model::Result<frame::Snapshot>>>();
     auto future = promise->get_future();
-    loop->snapshot(output, width, [promise](model::Result<frame::Snapshot> got) { promise->set_value(got); });
+    loop->snapshot(output, width,
+                   [promise](model::Result<frame::Snapshot> got) { promise->set_value(std::move(got)); });
     until([&] { return future.wait_for(0s) == std::future_status::ready; });
     return future.get();
   }

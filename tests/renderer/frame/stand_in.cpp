@@ -60,7 +60,8 @@ Renderer::~Renderer() {
   --tests::stand_in().alive;
 }
 
-model::Result<std::unique_ptr<Renderer>> Renderer::make(RendererOptions) {
+model::Result<std::unique_ptr<Renderer>>
+Renderer::make(RendererOptions /*options*/) { // NOLINT(performance-unnecessary-value-param): as the real one
   auto impl = std::make_unique<Impl>();
   glCreateFramebuffers(1, &impl->framebuffer);
   return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));

@@ -131,7 +131,9 @@ TEST_CASE("the image point of a direction shows the wall in that direction") {
   moved.off_axis = {0.2, 0.1, -0.3};
   for (const model::Projection& projection : {turned, moved, of(model::Cylinder{{360.0}, {140.0}})}) {
     const Picture picture = seen(projection, 256, 256);
-    for (const auto& [direction, wall] : looks) {
+    for (const auto& look : looks) {
+      const auto& direction = look.first;
+      const int wall = look.second; // no structured binding: the macro below captures it
       const int found = wall_towards(picture, projection, direction);
       CAPTURE(projection.shape.index());
       CAPTURE(wall);
