@@ -121,7 +121,7 @@ void main() {
 
   Lighting lighting = frame_lighting();
 #ifdef CUPOLA_UNLIT
-  vec3 color = surface.base + surface.emissive;
+  vec3 color = surface.base;
 #else
   vec3 color = shade(surface, lighting);
 #ifdef CUPOLA_LIGHTS
