@@ -106,10 +106,10 @@ model::Result<FrameRange> parse_frames(const std::string& text) {
 }
 
 /// One picture goes to the file named; several go into a folder, numbered and named by output.
-std::filesystem::path file_of(const Options& options, const FrameRange& range, bool several_outputs,
-                              const std::string& output, long frame) {
+std::filesystem::path file_of(const Options& options, const FrameRange& range, const std::string& output,
+                              long frame) {
   std::filesystem::path target(options.target);
-  if (!range.given && !several_outputs && target.has_extension()) return target;
+  if (outputs::format_of(target.extension().string())) return target;
   char number[32];
   std::snprintf(number, sizeof number, "_%06ld", frame);
   return target / (output + (range.given ? number : "") + ".png");
@@ -129,9 +129,13 @@ ExitCode run(const Options& options) {
     return exit_unusable;
   }
   const bool several = loaded->show.outputs.size() > 1;
-  const bool folder = range->given || several || !std::filesystem::path(options.target).has_extension();
-  std::error_code error;
-  if (folder) std::filesystem::create_directories(options.target, error);
+  const std::filesystem::path target(options.target);
+  const bool names_picture = outputs::format_of(target.extension().string()).has_value();
+  if (names_picture && (range->given || several)) {
+    print_problems(
+        {bad("-o", "as a folder for several pictures (or --output NAME for one)", options.target)});
+    return exit_unusable;
+  }
 
   auto stage = make_stage(loaded->show, std::filesystem::path(options.show).parent_path());
   if (!stage) {
@@ -143,6 +147,9 @@ ExitCode run(const Options& options) {
     if (!options.quiet)
       std::fprintf(stderr, "\rreference %3.0f %%%s", share * 100.0, share >= 1.0 ? "\n" : "");
   };
+  std::error_code error;
+  if (!names_picture)
+    std::filesystem::create_directories(target, error); // writing says what is wrong with it
   auto offline = make_offline_renderer(options.samples > 0 ? options.samples : reference_samples, progress);
   if (!offline) {
     print_problems(offline.error());
@@ -160,7 +167,7 @@ ExitCode run(const Options& options) {
       const outputs::ByteImage image = read_picture(picture);
       outputs::ByteView pixels = outputs::view(image);
       pixels.alpha = false;
-      const auto file = file_of(options, *range, several, picture.output, frame);
+      const auto file = file_of(options, *range, picture.output, frame);
       if (auto written = outputs::write_image(file, pixels); !written) {
         print_problems(written.error());
         return exit_no;
