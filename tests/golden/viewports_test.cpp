@@ -5,6 +5,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "tests/support/drawing.h"
 
@@ -46,9 +47,12 @@ Shot part(const Shot& whole, int left, int top) {
 TEST_CASE("viewports side by side and one above the other do not share anything") {
   using enum model::Method;
   using enum model::Engine;
-  for (const auto& [method, engine] :
-       {std::pair{piecewise, cpu}, {piecewise, gpu}, {cubemap, automatic}, {reference, automatic}})
+  const std::vector<std::pair<model::Method, model::Engine>> ways{
+      {piecewise, cpu}, {piecewise, gpu}, {cubemap, automatic}, {reference, automatic}};
+  for (const auto& way : ways)
     for (const int supersampling : {1, 2}) {
+      const model::Method method = way.first;
+      const model::Engine engine = way.second;
       CAPTURE(static_cast<int>(method));
       CAPTURE(static_cast<int>(engine));
       CAPTURE(supersampling);
