@@ -101,12 +101,22 @@ void ScenePass::bind_program(const FrameScene& scene, VertexPath path, std::uint
   set_blending(is_blended(scene, material));
 }
 
+bool ScenePass::bind_geometry(const FrameScene& scene) const {
+  if (scene.style != model::StyleKind::wireframe) {
+    glBindVertexArray(scene.gpu.vertex_array());
+    return false;
+  }
+  glBindVertexArray(empty_array_.id());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, scene.gpu.vertices());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, scene.gpu.indices());
+  return true;
+}
+
 DrawCounts ScenePass::draw_items(const FrameScene& scene, std::span<const DrawItem> items,
                                  const glm::dmat3& to_screen, float style_scale) {
   const std::array matrix{glm::mat3(to_screen)};
   cull(scene, items, matrix[0], visible_);
-  const bool pulled = scene.style == model::StyleKind::wireframe;
-  glBindVertexArray(pulled ? empty_array_.id() : scene.gpu.vertex_array());
+  const bool pulled = bind_geometry(scene);
   DrawCounts counts;
   std::vector<GLsizei> index_counts;
   std::vector<const void*> offsets;
@@ -149,8 +159,7 @@ DrawCounts ScenePass::draw_layered(const FrameScene& scene, const std::array<glm
   set_front_face(to_screen[static_cast<std::size_t>(layers.front())]);
   std::vector<glm::mat3> matrices;
   for (const int layer : layers) matrices.emplace_back(to_screen[static_cast<std::size_t>(layer)]);
-  const bool pulled = scene.style == model::StyleKind::wireframe;
-  glBindVertexArray(pulled ? empty_array_.id() : scene.gpu.vertex_array());
+  const bool pulled = bind_geometry(scene);
   DrawCounts counts;
   const auto instances = static_cast<GLsizei>(layers.size());
   for (const auto* items : {&scene.list.opaque, &scene.list.blended})

@@ -86,6 +86,8 @@ public:
                     std::span<const glm::mat3> to_screen, std::span<const int> layers);
 
 private:
+  /// What direct and layered draws fetch vertices from; true: by number, from storage buffers 0 and 1.
+  bool bind_geometry(const FrameScene& scene) const;
   DrawCounts draw_items(const FrameScene& scene, std::span<const DrawItem> items, const glm::dmat3& to_screen,
                         float style_scale);
   struct StripTarget {
