@@ -3,6 +3,8 @@
 #include <cmath>
 #include <fmt/core.h>
 
+#include "server/control/problem_json.h"
+
 namespace cupola::daemon {
 
 namespace {
@@ -24,8 +26,6 @@ model::Json status_json(const frame::LoopStatus& status, const model::Problems& 
                             {"height", output.height},
                             {"frames", output.presented},
                             {"dropped", output.dropped}};
-  model::Json list = model::Json::array();
-  for (const model::Problem& problem : problems) list.push_back(model::to_text(problem));
   return {{"device", status.device.name},
           {"context", status.context},
           {"shown_revision", status.last.revision},
@@ -41,7 +41,7 @@ model::Json status_json(const frame::LoopStatus& status, const model::Problems& 
           {"vertex_bytes", status.last.vertex_bytes},
           {"uploading", status.last.uploading},
           {"outputs", std::move(outputs)},
-          {"problems", std::move(list)}};
+          {"problems", control::problems_json(problems)}};
 }
 
 } // namespace cupola::daemon

@@ -34,14 +34,16 @@ TEST_CASE("the line that systemd shows") {
   CHECK(daemon::status_line(one) == "revision 7, 59.9 frames a second, 2 late, 1 output");
 }
 
-TEST_CASE("the status on the network has outputs by name and problems as text") {
+TEST_CASE("the status on the network has outputs by name and problems as every answer has them") {
   const model::Json json = daemon::status_json(running(), {problem("a full one")});
   CHECK(json["shown_revision"] == 7);
   CHECK(json["late_frames"] == 2);
   CHECK(json["outputs"]["takes"]["frames"] == 100);
   CHECK(json["outputs"]["takes"]["dropped"] == 20);
   REQUIRE(json["problems"].size() == 1);
-  CHECK(json["problems"][0].get<std::string>().find("[OUT-102]") != std::string::npos);
+  CHECK(json["problems"][0]["code"] == "OUT-102");
+  CHECK(json["problems"][0]["pointer"] == "/outputs/takes");
+  CHECK(json["problems"][0]["text"].get<std::string>().find("[OUT-102]") != std::string::npos);
 }
 
 TEST_CASE("a revision that cannot be shown is a fault until a newer one is shown") {
