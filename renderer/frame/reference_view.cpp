@@ -59,6 +59,7 @@ struct ReferenceView::Impl {
         now = std::move(*job);
         job.reset();
         tracing = true;
+        cancel = false;
         wanted = options;
       }
       if (scene != now.stage->scene) {
@@ -87,8 +88,8 @@ struct ReferenceView::Impl {
       const bool whole = tracer->render(request, picture);
       {
         const std::lock_guard lock(mutex);
-        if (whole) finished = std::move(picture);
-        failed = !whole;
+        if (whole && !cancel) finished = std::move(picture);
+        failed = !whole && !cancel;
         if (failed) problems = tracer->problems();
         tracing = false;
       }
@@ -130,6 +131,22 @@ void ReferenceView::request(std::shared_ptr<const Stage> stage, const plan::View
         Impl::Job{std::move(stage), viewport.map, viewport.rect.width, viewport.rect.height, camera, time};
   }
   impl_->changed.notify_all();
+}
+
+bool ReferenceView::forget() {
+  impl_->texture = {};
+  const std::lock_guard lock(impl_->mutex);
+  impl_->job.reset();
+  impl_->finished.reset();
+  impl_->failed = false;
+  if (impl_->tracing) impl_->cancel = true;
+  return !impl_->tracing;
+}
+
+bool ReferenceView::has_answer() const {
+  if (impl_->texture) return true;
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->finished.has_value() || impl_->failed;
 }
 
 void ReferenceView::set_options(ReferenceOptions options) {

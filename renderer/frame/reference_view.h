@@ -30,6 +30,11 @@ public:
   /// Off-line: each request is waited for, so that the picture is that of the frame. Returns without one when
   /// tracing failed.
   void wait();
+  /// Stops a picture in the making and lets go of the newest one. False while the thread still works: only a
+  /// view for which this was true is destroyed without waiting.
+  bool forget();
+  /// There is a picture to show, or tracing failed and there will be none.
+  [[nodiscard]] bool has_answer() const;
   /// For the pictures requested from now on.
   void set_options(ReferenceOptions options);
   /// Why the last picture failed; empties the list.

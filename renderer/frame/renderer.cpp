@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <glm/matrix.hpp>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "renderer/frame/realised.h"
 #include "renderer/frame/reference_view.h"
@@ -81,7 +83,9 @@ struct Renderer::Impl {
   passes::DrawList list;
 
   void take_waiting();
-  void upload();
+  void upload(double time);
+  bool references_answer(double time);
+  void drop_references();
   passes::FrameScene pose_scene(const plan::CameraPose& camera, double time);
   passes::DrawCounts draw_output(const plan::OutputPlan& output, const passes::FrameScene& scene,
                                  const plan::CameraPose& camera, double time);
@@ -142,7 +146,44 @@ void Renderer::Impl::take_waiting() {
   next = std::move(*made);
 }
 
-void Renderer::Impl::upload() {
+namespace {
+
+/// Calls f(key, viewport) for each viewport of a stage that rays are traced for.
+template <class F>
+void each_reference(const Stage& stage, F f) {
+  for (const plan::OutputPlan& output : stage.plan->outputs)
+    for (const plan::ViewportPlan& viewport : output.viewports)
+      if (viewport.method == model::Method::reference) f(output.name + '/' + viewport.name, viewport);
+}
+
+} // namespace
+
+/// Every viewport of the next stage that rays are traced for has a picture. Pictures that an earlier stage
+/// asked for count too: edits that keep coming do not hold the swap up.
+bool Renderer::Impl::references_answer(double time) {
+  bool all = true;
+  each_reference(*next->stage, [&](const std::string& key, const plan::ViewportPlan& viewport) {
+    ReferenceView& view = references[key];
+    if (view.has_answer()) return;
+    view.set_options({options.reference_samples, 1, options.progress});
+    view.request(next->stage, viewport, plan::camera_at(next->stage->show->camera, time), time);
+    all = false;
+  });
+  return all;
+}
+
+/// What neither stage traces rays for is let go, so that nothing old is shown should it come back.
+void Renderer::Impl::drop_references() {
+  if (references.empty()) return;
+  std::set<std::string> used;
+  const auto note = [&](const std::string& key, const plan::ViewportPlan&) { used.insert(key); };
+  if (current) each_reference(*current->stage, note);
+  if (next) each_reference(*next->stage, note);
+  for (auto it = references.begin(); it != references.end();)
+    it = !used.contains(it->first) && it->second.forget() ? references.erase(it) : std::next(it);
+}
+
+void Renderer::Impl::upload(double time) {
   if (!next) return;
   if (!next->scene_ready) {
     if (!current || options.offline) {
@@ -153,6 +194,8 @@ void Renderer::Impl::upload() {
     }
   }
   if (!next->scene_ready) return;
+  // At the start there is nothing better to show meanwhile; off-line, drawing waits.
+  if (current && !options.offline && !references_answer(time)) return;
   current = std::move(*next);
   next.reset();
 }
@@ -281,7 +324,8 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
 
 FrameStatistics Renderer::draw(double time) {
   impl_->take_waiting();
-  impl_->upload();
+  impl_->upload(time);
+  impl_->drop_references();
   FrameStatistics statistics;
   if (!impl_->current) return statistics;
   const Realised& current = *impl_->current;
