@@ -1,5 +1,6 @@
 // cupola render: pictures of a show, off-line.
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -106,10 +107,10 @@ model::Result<FrameRange> parse_frames(const std::string& text) {
 }
 
 /// One picture goes to the file named; several go into a folder, numbered and named by output.
-std::filesystem::path file_of(const Options& options, const FrameRange& range, const std::string& output,
-                              long frame) {
+std::filesystem::path file_of(const Options& options, const FrameRange& range, bool names_picture,
+                              const std::string& output, long frame) {
   std::filesystem::path target(options.target);
-  if (outputs::format_of(target.extension().string())) return target;
+  if (names_picture) return target;
   char number[32];
   std::snprintf(number, sizeof number, "_%06ld", frame);
   return target / (output + (range.given ? number : "") + ".png");
@@ -119,7 +120,10 @@ ExitCode run(const Options& options) {
   auto loaded = loader::load_show(options.show);
   if (!loaded) {
     print_problems(loaded.error());
-    return exit_unusable;
+    const auto unread = [](const model::Problem& problem) {
+      return problem.code == model::Code::file_unreadable || problem.code == model::Code::file_too_large;
+    };
+    return std::any_of(loaded.error().begin(), loaded.error().end(), unread) ? exit_unusable : exit_no;
   }
   model::Problems problems = apply(options, loaded->show);
   auto range = parse_frames(options.frames);
@@ -130,8 +134,11 @@ ExitCode run(const Options& options) {
   }
   const bool several = loaded->show.outputs.size() > 1;
   const std::filesystem::path target(options.target);
-  const bool names_picture = outputs::format_of(target.extension().string()).has_value();
-  if (names_picture && (range->given || several)) {
+  const bool single = !several && range->first == range->last;
+  // A format that is not known is said when the one picture is written; a folder may have a dot in its name.
+  const bool names_picture = outputs::format_of(target.extension().string()).has_value() ||
+                             (single && target.has_extension() && !std::filesystem::is_directory(target));
+  if (names_picture && !single) {
     print_problems(
         {bad("-o", "as a folder for several pictures (or --output NAME for one)", options.target)});
     return exit_unusable;
@@ -167,7 +174,7 @@ ExitCode run(const Options& options) {
       const outputs::ByteImage image = read_picture(picture);
       outputs::ByteView pixels = outputs::view(image);
       pixels.alpha = false;
-      const auto file = file_of(options, *range, picture.output, frame);
+      const auto file = file_of(options, *range, names_picture, picture.output, frame);
       if (auto written = outputs::write_image(file, pixels); !written) {
         print_problems(written.error());
         return exit_no;

@@ -67,6 +67,8 @@ class Render(unittest.TestCase):
         self.render("--output", "dome", "--frames", "3..5", "-o", self.folder / "frames")
         self.assertEqual(sorted(f.name for f in (self.folder / "frames").iterdir()),
                          ["dome_000003.png", "dome_000004.png", "dome_000005.png"])
+        self.render("--output", "dome", "--frames", "3..3", "-o", self.folder / "third.png")
+        self.assertEqual((self.folder / "third.png").read_bytes(), (self.folder / "frames/dome_000003.png").read_bytes())
 
     def test_progress_goes_to_standard_error_and_quiet_silences_it(self):
         done = self.render("--output", "wall", "--method", "reference", "-o", self.folder / "a.png")
@@ -84,6 +86,9 @@ class Render(unittest.TestCase):
         self.render("--method", "magic", *to, expect=2)
         self.render(expect=2)
         self.run_cupola("render", self.folder / "absent.json", *to, expect=2)
+        (self.folder / "bad.json").write_text("{}")
+        self.run_cupola("render", self.folder / "bad.json", *to, expect=1)
+        self.assertIn(".bmp", self.render("--output", "dome", "-o", self.folder / "x.bmp", expect=1).stderr)
         # The dome has no pieces: a problem of the show, with its place.
         done = self.render("--method", "piecewise", "-o", self.folder / "out", expect=1)
         self.assertRegex(done.stderr, r"/outputs/dome/viewports/all/method: .*\[PLN-101\]")
