@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <pthread.h>
 #include <thread>
 
 #include "renderer/reference/picture.h"
@@ -46,6 +47,7 @@ struct ReferenceView::Impl {
   }
 
   void run() {
+    pthread_setname_np(pthread_self(), "rays");
     std::shared_ptr<const content::Scene> scene;
     std::unique_ptr<reference::Tracer> tracer;
     content::Pose pose;
