@@ -111,7 +111,13 @@ ExitCode set(const Asked& asked) {
       std::cout << '\n';
     }
     if (status != 202) return exit_done;
-    std::cerr << "cupola: accepted, but no frame has shown it within " << asked.timeout << " s\n";
+    const Json problems = answer.value("problems", Json::array());
+    for (const Json& problem : problems)
+      std::cerr << "cupola: " << problem.value("text", problem.dump()) << '\n';
+    std::cerr << "cupola: accepted, but "
+              << (problems.empty() ? "no frame has shown it in time"
+                                   : "it cannot be shown; what was shown before goes on")
+              << '\n';
     return exit_no;
   });
 }

@@ -116,6 +116,7 @@ frame::LoopHooks hooks_of(state::LiveState& live, Stages& stages, Faults& faults
     log_problems(problems);
     faults.add_failed(revision, problems);
     supervisor.failed(revision);
+    live.failed(revision, problems);
   };
   hooks.problems = [&](const model::Problems& problems) {
     log_problems(problems);

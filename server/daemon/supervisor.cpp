@@ -70,15 +70,16 @@ void Supervisor::reloaded(const state::Answer& answer) {
   for (const model::Problem& warning : answer->warnings) spdlog::warn("{}", model::to_text(warning));
   const model::Revision revision = answer->revision;
   not_shown_.insert(revision);
-  live_.when_shown(revision, reload_patience, [this, revision](std::optional<std::uint64_t> frame) {
-    main_.post([this, revision, frame] {
-      const auto waiting = not_shown_.find(revision);
-      if (waiting == not_shown_.end()) return; // has failed already
-      not_shown_.erase(waiting);
-      if (frame) spdlog::info("reloaded: revision {} shown in frame {}", revision, *frame);
-      reload_over(frame ? "running" : "the reloaded show is not shown yet");
-    });
-  });
+  live_.when_shown(revision, reload_patience,
+                   [this, revision](std::optional<std::uint64_t> frame, const model::Problems&) {
+                     main_.post([this, revision, frame] {
+                       const auto waiting = not_shown_.find(revision);
+                       if (waiting == not_shown_.end()) return; // has failed already
+                       not_shown_.erase(waiting);
+                       if (frame) spdlog::info("reloaded: revision {} shown in frame {}", revision, *frame);
+                       reload_over(frame ? "running" : "the reloaded show is not shown yet");
+                     });
+                   });
 }
 
 void Supervisor::reload_over(const std::string& status) {

@@ -28,7 +28,7 @@ FrameLog::~FrameLog() {
   }
   wake();
   thread_.join();
-  for (Waiting& one : waiting_) one.callback(std::nullopt);
+  for (Waiting& one : waiting_) one.callback(std::nullopt, {});
   close(event_);
 }
 
@@ -63,6 +63,16 @@ std::optional<std::uint64_t> FrameLog::first_frame(model::Revision revision) con
   return it == history_.end() ? std::nullopt : std::optional(it->frame);
 }
 
+void FrameLog::failed(model::Revision revision, model::Problems why) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (revision < failed_) return;
+    failed_ = revision;
+    why_ = std::move(why);
+  }
+  wake();
+}
+
 void FrameLog::when_shown(model::Revision revision, std::chrono::milliseconds timeout,
                           ShownCallback callback) {
   std::optional<std::uint64_t> frame;
@@ -72,7 +82,7 @@ void FrameLog::when_shown(model::Revision revision, std::chrono::milliseconds ti
     if (!frame) waiting_.push_back({revision, Clock::now() + timeout, std::move(callback)});
   }
   if (frame)
-    callback(frame); // NOLINT(bugprone-use-after-move): moved only without a frame
+    callback(frame, {}); // NOLINT(bugprone-use-after-move): moved only without a frame
   else
     wake();
 }
@@ -89,7 +99,12 @@ void FrameLog::keep(std::shared_ptr<const Snapshot> snapshot) {
 void FrameLog::run() {
   pthread_setname_np(pthread_self(), "shown");
   for (;;) {
-    std::vector<std::pair<ShownCallback, std::optional<std::uint64_t>>> due;
+    struct Due {
+      ShownCallback callback;
+      std::optional<std::uint64_t> frame;
+      model::Problems why_not;
+    };
+    std::vector<Due> due;
     std::vector<std::shared_ptr<const Snapshot>> retired;
     int wait_ms = -1;
     {
@@ -99,13 +114,14 @@ void FrameLog::run() {
       const Clock::time_point now = Clock::now();
       std::erase_if(waiting_, [&](Waiting& one) {
         const auto frame = first_frame(one.revision);
-        if (!frame && one.deadline > now) {
+        if (!frame && one.deadline > now && one.revision > failed_) {
           const auto left = std::chrono::ceil<std::chrono::milliseconds>(one.deadline - now).count();
           const int left_ms = static_cast<int>(std::min<std::int64_t>(left, 60'000));
           wait_ms = wait_ms < 0 ? left_ms : std::min(wait_ms, left_ms);
           return false;
         }
-        due.emplace_back(std::move(one.callback), frame);
+        due.push_back(
+            {std::move(one.callback), frame, !frame && one.revision <= failed_ ? why_ : model::Problems{}});
         return true;
       });
       const model::Revision newest = history_.empty() ? 0 : history_.back().revision;
@@ -114,7 +130,7 @@ void FrameLog::run() {
         kept_.pop_front();
       }
     }
-    for (auto& [callback, frame] : due) callback(frame);
+    for (const Due& one : due) one.callback(one.frame, one.why_not);
     due.clear();
     retired.clear();
 

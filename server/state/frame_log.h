@@ -24,6 +24,10 @@ public:
   /// One thread only (render). Two atomics and, for a new revision, a write to an eventfd: never blocks.
   void shown(model::Revision revision, std::uint64_t frame) noexcept;
 
+  /// `revision` cannot be shown: who waits for it or an older one that no frame has shown is answered with
+  /// nullopt now instead of after the timeout. Any thread; a short lock.
+  void failed(model::Revision revision, model::Problems why);
+
   void when_shown(model::Revision revision, std::chrono::milliseconds timeout, ShownCallback callback);
 
   /// Holds a replaced snapshot until a newer one has been shown, so that it is not the render thread that
@@ -56,6 +60,8 @@ private:
   std::deque<Entry> history_;
   std::vector<Waiting> waiting_;
   std::deque<std::shared_ptr<const Snapshot>> kept_;
+  model::Revision failed_ = 0; ///< the newest
+  model::Problems why_;        ///< it failed
   bool stop_ = false;
 
   int event_ = -1;

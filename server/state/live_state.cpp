@@ -362,6 +362,10 @@ void LiveState::shown(model::Revision revision, std::uint64_t frame) noexcept {
   impl_->frames.shown(revision, frame);
 }
 
+void LiveState::failed(model::Revision revision, model::Problems why) {
+  impl_->frames.failed(revision, std::move(why));
+}
+
 void LiveState::when_shown(model::Revision revision, std::chrono::milliseconds timeout,
                            ShownCallback callback) {
   impl_->frames.when_shown(revision, timeout, std::move(callback));

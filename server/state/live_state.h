@@ -49,9 +49,9 @@ using Answer = model::Result<Accepted>;
 /// Called once, on the thread "prepare": hand over to your own thread, never block or throw.
 using AnswerCallback = std::function<void(const Answer&)>;
 
-/// The frame that first showed the revision (or a later one), or nullopt: not within the time.
-/// Called once, on the thread "shown", or on the caller's: never block or throw.
-using ShownCallback = std::function<void(std::optional<std::uint64_t> frame)>;
+/// The frame that first showed the revision (or a later one), or nullopt: not within the time, or never, and
+/// then `why_not` says why. Called once, on the thread "shown", or on the caller's: never block or throw.
+using ShownCallback = std::function<void(std::optional<std::uint64_t> frame, const model::Problems& why_not)>;
 
 struct Options {
   /// Loads what scene.content names. Called on the thread "prepare" (the first time by make()), only when the
@@ -92,7 +92,11 @@ public:
   /// Render thread, after presenting on all outputs: `revision` was in frame `frame`. Never blocks.
   void shown(model::Revision revision, std::uint64_t frame) noexcept;
 
-  /// Calls back when a frame has shown `revision` or a later one, or after `timeout`.
+  /// `revision` cannot be shown, what was shown before goes on. Any thread.
+  void failed(model::Revision revision, model::Problems why);
+
+  /// Calls back when a frame has shown `revision` or a later one; with nullopt when it failed, or after
+  /// `timeout`.
   void when_shown(model::Revision revision, std::chrono::milliseconds timeout, ShownCallback callback);
 
 private:

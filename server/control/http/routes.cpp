@@ -321,10 +321,12 @@ void Routes::Impl::change(const Request& request, const Target& target, const st
       respond(std::move(response));
     };
     if (!until_shown) return send(200, out);
-    live.when_shown(answer->revision, wait_for, [send, out](std::optional<std::uint64_t> frame) mutable {
-      out["frame"] = frame ? Json(*frame) : Json();
-      send(frame ? 200 : 202, out);
-    });
+    live.when_shown(answer->revision, wait_for,
+                    [send, out](std::optional<std::uint64_t> frame, const Problems& why_not) mutable {
+                      out["frame"] = frame ? Json(*frame) : Json();
+                      if (!frame) out["problems"] = problems_json(why_not);
+                      send(frame ? 200 : 202, out);
+                    });
   });
 }
 

@@ -12,7 +12,7 @@ namespace {
 std::future<std::optional<std::uint64_t>> ask(FrameLog& log, cupola::model::Revision revision,
                                               std::chrono::milliseconds timeout = 60s) {
   auto promise = std::make_shared<std::promise<std::optional<std::uint64_t>>>();
-  log.when_shown(revision, timeout, [promise](auto frame) { promise->set_value(frame); });
+  log.when_shown(revision, timeout, [promise](auto frame, const auto&) { promise->set_value(frame); });
   return promise->get_future();
 }
 
@@ -42,6 +42,19 @@ TEST_CASE("who waits in vain is told so") {
   FrameLog log;
   log.shown(1, 1);
   CHECK(ask(log, 2, 1ms).get() == std::nullopt);
+}
+
+TEST_CASE("who waits for what cannot be shown is told why at once; a newer revision is waited for") {
+  FrameLog log;
+  std::promise<cupola::model::Problems> why;
+  log.when_shown(2, 60s, [&](auto, const auto& problems) { why.set_value(problems); });
+  auto newer = ask(log, 4);
+  log.failed(3, {{cupola::model::Code::image_unwritable, "/outputs/a", "a disk", "a full one", "", {}, {}}});
+  REQUIRE(why.get_future().get().size() == 1);
+  CHECK(ask(log, 3).get() == std::nullopt);
+  log.shown(4, 9);
+  CHECK(newer.get() == 9);
+  CHECK(ask(log, 3).get() == 9);
 }
 
 TEST_CASE("who still waits at the end is told so") {

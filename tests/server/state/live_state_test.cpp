@@ -384,7 +384,7 @@ TEST_CASE("many writers, a reader that never waits, and a renderer: every snapsh
   std::promise<std::optional<std::uint64_t>> shown;
   const Answer last = set(*live, "/projections/wall/horizontal_fov", 77);
   REQUIRE(last);
-  live->when_shown(last->revision, 60s, [&](auto frame) { shown.set_value(frame); });
+  live->when_shown(last->revision, 60s, [&](auto frame, const auto&) { shown.set_value(frame); });
   CHECK(shown.get_future().get());
   done = true;
   renderer.join();
