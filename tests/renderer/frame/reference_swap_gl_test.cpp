@@ -27,7 +27,7 @@ tests::Shot shot_of(const frame::Renderer& renderer) {
 tests::Shot show(frame::Renderer& renderer, std::uint64_t revision) {
   for (int frame = 0; frame < 10'000; ++frame) {
     const std::uint64_t drawn = renderer.draw(0.0).revision;
-    const tests::Shot shot = shot_of(renderer);
+    tests::Shot shot = shot_of(renderer);
     CHECK(tests::count_pixels(shot, 0, 0, 0) == 0);
     if (drawn == revision) return shot;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
