@@ -99,7 +99,7 @@ class Daemon:
     """`with Daemon(binary, show) as daemon:` runs until the block ends. `show`: a document, or text."""
 
     def __init__(self, binary, show, arguments=(), environment=None, watchdog_seconds=None, wait=True):
-        self.binary = str(binary)
+        self.binary = str(Path(binary).resolve())  # it runs in a folder of its own
         self.folder_owner = tempfile.TemporaryDirectory(prefix="cupola-")
         self.folder = Path(self.folder_owner.name)
         self.port = free_port()
