@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ constexpr int reference_samples = 64; // a pixel, unless told otherwise
 struct Options {
   std::string show, output, method, frames, size, cubemap_size, target;
   int samples = 0, supersampling = 0, anisotropy = 0; ///< 0: as the show says
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 struct FrameRange {
@@ -116,6 +117,42 @@ std::filesystem::path file_of(const Options& options, const FrameRange& range, b
   return target / (output + (range.given ? number : "") + ".png");
 }
 
+/// Draws and writes every picture. With --json a list of them follows on standard output.
+ExitCode render_frames(const Options& options, const FrameRange& range, bool names_picture, double frame_rate,
+                       frame::Renderer& renderer) {
+  auto pictures = nlohmann::ordered_json::array();
+  for (long frame = range.first; frame <= range.last; ++frame) {
+    renderer.draw(static_cast<double>(frame) / frame_rate);
+    if (model::Problems failed = renderer.take_problems(); !failed.empty()) {
+      print_problems(failed);
+      return exit_no;
+    }
+    for (const frame::Picture& picture : renderer.pictures()) {
+      const outputs::ByteImage image = read_picture(picture);
+      outputs::ByteView pixels = outputs::view(image);
+      pixels.alpha = false;
+      const auto file = file_of(options, range, names_picture, picture.output, frame);
+      if (auto written = outputs::write_image(file, pixels); !written) {
+        print_problems(written.error());
+        return exit_no;
+      }
+      if (!options.quiet) std::fprintf(stderr, "%s\n", file.c_str());
+      pictures.push_back({{"file", file.string()},
+                          {"output", picture.output},
+                          {"frame", frame},
+                          {"width", picture.width},
+                          {"height", picture.height}});
+    }
+    if (range.given && !options.quiet)
+      std::fprintf(stderr, "frame %ld of %ld..%ld\n", frame, range.first, range.last);
+  }
+  if (options.json) {
+    const nlohmann::ordered_json out{{"device", renderer.device().name}, {"pictures", std::move(pictures)}};
+    std::printf("%s\n", out.dump(2).c_str());
+  }
+  return exit_done;
+}
+
 ExitCode run(const Options& options) {
   auto loaded = loader::load_show(options.show);
   if (!loaded) {
@@ -162,29 +199,8 @@ ExitCode run(const Options& options) {
     print_problems(offline.error());
     return exit_unusable;
   }
-  frame::Renderer& renderer = *offline->renderer;
-  renderer.set_stage(*stage);
-  for (long frame = range->first; frame <= range->last; ++frame) {
-    renderer.draw(static_cast<double>(frame) / loaded->show.frame_rate);
-    if (model::Problems failed = renderer.take_problems(); !failed.empty()) {
-      print_problems(failed);
-      return exit_no;
-    }
-    for (const frame::Picture& picture : renderer.pictures()) {
-      const outputs::ByteImage image = read_picture(picture);
-      outputs::ByteView pixels = outputs::view(image);
-      pixels.alpha = false;
-      const auto file = file_of(options, *range, names_picture, picture.output, frame);
-      if (auto written = outputs::write_image(file, pixels); !written) {
-        print_problems(written.error());
-        return exit_no;
-      }
-      if (!options.quiet) std::fprintf(stderr, "%s\n", file.c_str());
-    }
-    if (range->given && !options.quiet)
-      std::fprintf(stderr, "frame %ld of %ld..%ld\n", frame, range->first, range->last);
-  }
-  return exit_done;
+  offline->renderer->set_stage(*stage);
+  return render_frames(options, *range, names_picture, loaded->show.frame_rate, *offline->renderer);
 }
 
 } // namespace
@@ -214,6 +230,8 @@ void add_render(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--anisotropy", options->anisotropy, "Of texture filtering")
       ->check(CLI::Range(1, 16))
       ->type_name("N");
+  command->add_flag("--json", options->json,
+                    "One JSON object about the pictures on standard output, nothing else");
   command->add_flag("--quiet", options->quiet, "Prints nothing but problems");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -77,6 +77,15 @@ class Render(unittest.TestCase):
         done = self.render("--output", "wall", "--method", "reference", "--quiet", "-o", self.folder / "a.png")
         self.assertEqual(done.stdout + done.stderr, "")
 
+    def test_json_alone_on_standard_output(self):
+        done = self.render("--output", "dome", "--frames", "1..2", "--json", "-o", self.folder / "frames")
+        report = json.loads(done.stdout)
+        self.assertTrue(report["device"])
+        self.assertEqual([(p["output"], p["frame"], p["width"], p["height"]) for p in report["pictures"]],
+                         [("dome", 1, 32, 32), ("dome", 2, 32, 32)])
+        for picture in report["pictures"]:
+            self.assertEqual(png_size(Path(picture["file"])), (32, 32))
+
     def test_what_cannot_be_done_is_said_with_its_exit_code(self):
         to = ("-o", self.folder / "x.png")
         self.assertIn("dome", self.render("--output", "dom", *to, expect=2).stderr)
