@@ -107,8 +107,8 @@ void GpuStrips::upload(const FrameScene& scene, std::span<const DrawItem> items,
   if (!list.commands) list.commands = gl::Buffer::make();
   glNamedBufferData(list.commands.id(), static_cast<GLsizeiptr>(runs.size() * 2 * sizeof(DrawCommand)),
                     nullptr, GL_DYNAMIC_COPY);
-  list.cluster_capacity = clusters.size();
-  list.run_capacity = runs.size();
+  list.cluster_count = clusters.size();
+  list.run_count = runs.size();
 }
 
 void GpuStrips::collect_total(List& list) {
@@ -142,7 +142,7 @@ void GpuStrips::draw_list(ScenePass& pass, const FrameScene& scene, std::span<co
   const std::vector<Run> runs = join_runs(items);
   upload(scene, items, runs, list);
 
-  const std::size_t clusters = list.cluster_capacity;
+  const std::size_t clusters = list.cluster_count;
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, scene.gpu.vertices());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, scene.gpu.indices());
   bind(2, list.clusters, clusters * sizeof(GpuCluster));
@@ -151,7 +151,7 @@ void GpuStrips::draw_list(ScenePass& pass, const FrameScene& scene, std::span<co
   bind(5, list.control);
   bind(6, borders_);
   bind(7, list.offsets);
-  bind(8, list.runs, list.run_capacity * sizeof(GpuRun));
+  bind(8, list.runs, list.run_count * sizeof(GpuRun));
   bind(9, list.commands);
   const auto capacity = static_cast<GLuint>(std::min<std::uint64_t>(list.pair_capacity, ~0u));
   const auto groups = static_cast<GLuint>(clusters);
@@ -189,7 +189,6 @@ DrawCounts GpuStrips::draw(ScenePass& pass, const FrameScene& scene, const plan:
   refill(borders_, azimuths.borders().data(), azimuths.borders().size() * sizeof(float));
   for (const gl::Program* program : {&count_, &emit_}) {
     glProgramUniformMatrix3fv(program->id(), 0, 1, GL_FALSE, glm::value_ptr(azimuths.axes_from_view()));
-    glProgramUniform1f(program->id(), 1, azimuths.borders().front());
     glProgramUniform1i(program->id(), 2, azimuths.count());
     glProgramUniform1i(program->id(), 3, azimuths.full_turn() ? 1 : 0);
   }

@@ -26,7 +26,7 @@ private:
   /// One ordered list: the opaque or the blended one.
   struct List {
     gl::Buffer clusters, runs, offsets, commands, pairs, control, read_back;
-    std::size_t cluster_capacity = 0, run_capacity = 0;
+    std::size_t cluster_count = 0, run_count = 0;
     std::uint64_t pair_capacity = 0;
     std::uint64_t last_total = 0;
     gl::Fence fence;

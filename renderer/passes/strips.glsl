@@ -6,7 +6,6 @@ const float pi = 3.14159265358979;
 const float margin = 1e-4; // radians; float azimuths are good to 1e-6
 
 layout(location = 0) uniform mat3 axes_from_view; // rows: right, axis, back of the cylinder
-layout(location = 1) uniform float first_azimuth; // left border of strip 0, radians
 layout(location = 2) uniform int strip_count;
 layout(location = 3) uniform bool full_turn;
 layout(std430, binding = 6) readonly buffer Borders { float borders[]; }; // strip_count + 1, rising
