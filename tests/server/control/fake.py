@@ -4,6 +4,7 @@ import json
 import socket
 import subprocess
 import sys
+import time
 import unittest
 
 DAEMON = sys.argv.pop(1)
@@ -44,6 +45,14 @@ class WithDaemon(unittest.TestCase):
     def get(self, path):
         status, value, _ = self.ask("GET", "/api/v1/" + path)
         self.assertEqual(status, 200, value)
+        return value
+
+    def wait_for(self, what, condition):
+        """What `condition` returns as soon as it is true of something; a busy machine is given time."""
+        end = time.monotonic() + 30
+        while not (value := condition()):
+            self.assertLess(time.monotonic(), end, "no " + what + " in 30 s")
+            time.sleep(0.02)
         return value
 
     def connect(self):

@@ -46,7 +46,7 @@ class Reading(fake.WithDaemon):
         self.assertEqual(status["version"], "test")
         self.assertEqual(status["revision"], 1)
         self.assertEqual(status["device"], "no device")
-        self.assertGreater(status["outputs"]["main"]["frames"], 0)
+        self.wait_for("first frame", lambda: self.get("status")["outputs"]["main"]["frames"] > 0)
         self.assertGreaterEqual(status["uptime"], 0)
         self.assertEqual([p for p in status["problems"] if p["severity"] == "error"], [])
 
