@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -31,16 +33,52 @@ struct Piece {
   /// Inside where dot(plane, v) >= 0 for all: two for a strip (left, right), three for a triangle.
   std::array<glm::dvec3, 3> planes;
   int plane_count = 0;
+  /// Of a triangle the planes are the rows of [r0 r1 r2]⁻¹: plane i · v is the barycentric coordinate of
+  /// corner i, which is also the clip distance.
   PixelRect bounds; ///< pixels (of the rect given) that it may touch; strips: exactly these
 };
 
-/// All pieces of a viewport. Strips stand in order from left to right; a perspective is one piece without
-/// planes.
+/// A corner that triangular pieces share: the ray that it shows and where it lands. With b the barycentric
+/// coordinates of a point v on the pyramid of a piece's three rays, [r0 r1 r2] b = v, the point lands at the
+/// homogeneous h = Σ bᵢ wᵢ (xᵢ, yᵢ, 1). Weights belong to corners, so h is continuous over all borders.
+struct Corner {
+  glm::dvec3 ray;    ///< view axes, unit length
+  double weight;     ///< above 0; such that a perspective stays one: −ray.z for a plain perspective
+  glm::dvec2 screen; ///< normalised device coordinates of the viewport, y up; may lie outside [-1,1]²
+};
+
+/// What of a piece's pixels its projection shows.
+enum class Shown : std::uint8_t {
+  all,  ///< every pixel centre within the viewport
+  some, ///< the rim passes through: pixels must be asked one by one (projection::ray)
+};
+
+/// A subtree of the pieces, which stand in tree order: pieces first … first + count − 1.
+struct PieceGroup {
+  glm::dvec3 axis;      ///< of a cone about all its rays, unit length
+  double cosine = -1.0; ///< of the cone's half angle; -1: everything
+  std::uint32_t first = 0, count = 0;
+  std::uint32_t next =
+      0; ///< the group that follows when this one is skipped: pre-order; leaves: own number + 1
+};
+
+/// All pieces of a viewport: strips in order from left to right; or one piece without planes, a perspective;
+/// or triangles, whose neighbours share corners (no corner stands on another piece's border).
 struct PieceSet {
   std::vector<Piece> pieces;
   bool strips = false;    ///< pieces are full-height columns: a scissor can replace the planes
   double max_error = 0.0; ///< pixels between the true projection and the pieces, sampled inside pieces
   double rms_error = 0.0;
+
+  // Triangles only.
+  std::vector<Corner> corners;
+  std::vector<std::array<std::uint32_t, 3>> triangles; ///< by piece, its corners, counter-clockwise on screen
+  std::vector<Shown> shown;                            ///< by piece
+  std::vector<PieceGroup> groups;                      ///< a tree in pre-order, groups[0] holds all
+  bool fills = true; ///< every pixel centre of the viewport is shown; else what is not shown stays as it was
+  /// Screen triangles where no pyramid of rays is fit to draw (a pole, the rim beyond 340°, a fold): looked
+  /// up in a cubemap instead. Corners in normalised device coordinates, y up.
+  std::vector<std::array<glm::dvec2, 3>> looked_up;
 };
 
 /// Faces in GL order: +x −x +y −y +z −z, in view axes (the cubemap turns with the camera).
@@ -94,6 +132,18 @@ struct Planned {
 /// larger `rect`.
 [[nodiscard]] std::optional<PieceSet> make_strips(const projection::Map& map, const PixelRect& rect,
                                                   double max_error);
+
+/// Triangular pieces of any projection, as few as keep within `max_error` pixels of `rect` (or as good as the
+/// smallest cells get: PieceSet::max_error says). Corners stand on whole pixels; every border that is not
+/// parallel to an axis keeps clear of all pixel centres (the largest powers of two dividing its dx and dy
+/// differ), so that neither snapping nor rounding opens a hole. nullopt where nothing is shown, and for an
+/// eye outside its shape.
+[[nodiscard]] std::optional<PieceSet> make_cells(const projection::Map& map, const PixelRect& rect,
+                                                 double max_error);
+
+/// Fills pieces, groups and the order of triangles from corners, triangles and shown: a tree over the
+/// directions of the pieces.
+void finish_triangles(PieceSet& set, const PixelRect& rect);
 
 inline constexpr int min_cubemap_size = 16, max_cubemap_size = 8192; ///< that "auto" may choose
 
