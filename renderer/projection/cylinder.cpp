@@ -6,10 +6,14 @@
 
 namespace cupola::projection {
 
-// [Trapp & Döllner, sec. 3], turned so that s = 0 is -z and s rises to the right.
 std::optional<glm::dvec3> cylinder_ray(const CylinderMap& map, glm::dvec2 st, double zoom) {
+  if (!(std::abs(st.x / zoom * map.half_h) <= std::numbers::pi)) return std::nullopt;
+  return cylinder_beyond(map, st, zoom);
+}
+
+// [Trapp & Döllner, sec. 3], turned so that s = 0 is -z and s rises to the right.
+std::optional<glm::dvec3> cylinder_beyond(const CylinderMap& map, glm::dvec2 st, double zoom) {
   const double azimuth = st.x / zoom * map.half_h;
-  if (!(std::abs(azimuth) <= std::numbers::pi)) return std::nullopt;
   return glm::dvec3(std::sin(azimuth), st.y / zoom * map.tan_half_v, -std::cos(azimuth));
 }
 

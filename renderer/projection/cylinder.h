@@ -17,6 +17,9 @@ struct CylinderMap {
 /// nullopt beyond half a turn to either side.
 [[nodiscard]] std::optional<glm::dvec3> cylinder_ray(const CylinderMap& map, glm::dvec2 st, double zoom);
 
+/// The same without an end: beyond half a turn the wall comes again.
+[[nodiscard]] std::optional<glm::dvec3> cylinder_beyond(const CylinderMap& map, glm::dvec2 st, double zoom);
+
 /// Inverse, seen from `eye` inside the cylinder: the image point of where the ray from `eye` meets it.
 /// nullopt along the axis. Directly behind, one of the two image points.
 [[nodiscard]] std::optional<glm::dvec2> cylinder_point(const CylinderMap& map, const glm::dvec3& eye,

@@ -9,9 +9,13 @@
 namespace cupola::projection {
 
 std::optional<glm::dvec3> equirectangular_ray(const EquirectangularMap& map, glm::dvec2 st, double zoom) {
+  if (!(std::abs(st.x / zoom * map.half_h) <= std::numbers::pi)) return std::nullopt;
+  return equirectangular_beyond(map, st, zoom);
+}
+
+std::optional<glm::dvec3> equirectangular_beyond(const EquirectangularMap& map, glm::dvec2 st, double zoom) {
   const double longitude = st.x / zoom * map.half_h, latitude = st.y / zoom * map.half_v;
-  if (!(std::abs(longitude) <= std::numbers::pi) || !(std::abs(latitude) <= std::numbers::pi / 2))
-    return std::nullopt;
+  if (!(std::abs(latitude) <= std::numbers::pi / 2)) return std::nullopt;
   const double level = std::cos(latitude);
   return glm::dvec3(level * std::sin(longitude), std::sin(latitude), -level * std::cos(longitude));
 }

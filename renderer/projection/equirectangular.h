@@ -16,6 +16,10 @@ struct EquirectangularMap {
 [[nodiscard]] std::optional<glm::dvec3> equirectangular_ray(const EquirectangularMap& map, glm::dvec2 st,
                                                             double zoom);
 
+/// The same for longitudes without an end, to the poles.
+[[nodiscard]] std::optional<glm::dvec3> equirectangular_beyond(const EquirectangularMap& map, glm::dvec2 st,
+                                                               double zoom);
+
 /// Inverse, seen from `eye` inside the sphere. Of a pole, and directly behind, one of the image points that
 /// show it.
 [[nodiscard]] std::optional<glm::dvec2> equirectangular_point(const EquirectangularMap& map,

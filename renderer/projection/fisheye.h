@@ -21,6 +21,9 @@ struct FisheyeMap {
 /// The point of the unit sphere that an image point shows, in the shape's axes.
 [[nodiscard]] std::optional<glm::dvec3> fisheye_ray(const FisheyeMap& map, glm::dvec2 st, double zoom);
 
+/// The same outside the circle too, to half a turn from the centre.
+[[nodiscard]] std::optional<glm::dvec3> fisheye_beyond(const FisheyeMap& map, glm::dvec2 st, double zoom);
+
 /// Inverse, seen from `eye` inside the sphere. nullopt where the circle does not reach. Directly behind, one
 /// of the image points that show it.
 [[nodiscard]] std::optional<glm::dvec2> fisheye_point(const FisheyeMap& map, const glm::dvec3& eye,

@@ -65,6 +65,23 @@ std::optional<glm::dvec3> shape_ray(const Map& map, glm::dvec2 st) {
       map.shape);
 }
 
+std::optional<glm::dvec3> shape_beyond(const Map& map, glm::dvec2 st) {
+  return std::visit(
+      Overload{[&](const PerspectiveMap& shape) { return perspective_ray(shape, st, map.zoom); },
+               [&](const CylinderMap& shape) { return cylinder_beyond(shape, st, map.zoom); },
+               [&](const FisheyeMap& shape) { return fisheye_beyond(shape, st, map.zoom); },
+               [&](const EquirectangularMap& shape) { return equirectangular_beyond(shape, st, map.zoom); }},
+      map.shape);
+}
+
+/// From a point of the shape to a direction in view axes.
+std::optional<glm::dvec3> seen_from_eye(const Map& map, const std::optional<glm::dvec3>& point) {
+  if (!point) return std::nullopt;
+  const glm::dvec3 direction = map.orientation * (*point - map.off_axis);
+  if (!finite(direction) || direction == glm::dvec3(0.0)) return std::nullopt;
+  return direction;
+}
+
 std::optional<glm::dvec2> shape_point(const Map& map, const glm::dvec3& direction) {
   const glm::dvec3& eye = map.off_axis;
   return std::visit(
@@ -116,11 +133,18 @@ bool inside(const Map& map) {
 
 std::optional<glm::dvec3> ray(const Map& map, glm::dvec2 st) {
   if (!std::isfinite(st.x) || !std::isfinite(st.y)) return std::nullopt;
-  const auto point = shape_ray(map, st);
-  if (!point) return std::nullopt;
-  const glm::dvec3 direction = map.orientation * (*point - map.off_axis);
-  if (!finite(direction) || direction == glm::dvec3(0.0)) return std::nullopt;
-  return direction;
+  return seen_from_eye(map, shape_ray(map, st));
+}
+
+std::optional<glm::dvec3> beyond(const Map& map, glm::dvec2 st, glm::dvec2 inside) {
+  if (!std::isfinite(st.x) || !std::isfinite(st.y)) return std::nullopt;
+  static_cast<void>(inside); // no shape has breaks
+  return seen_from_eye(map, shape_beyond(map, st));
+}
+
+Breaks breaks(const Map& map) {
+  static_cast<void>(map);
+  return {};
 }
 
 std::optional<glm::dvec2> image_point(const Map& map, const glm::dvec3& direction) {

@@ -2,8 +2,10 @@
 // double precision, radians, no GL. Each shape has a file of its own and a GLSL twin beside it.
 //
 // Image coordinates (s,t) run over [-1,1]², s to the right, t upwards. Directions are in view space: x right,
-// y up, -z ahead. A ray is a direction, not normalised: its length carries the weight of the piecewise method
-// (a perspective's rays have -z = 1, a cylinder's have horizontal length 1, before off_axis).
+// y up, -z ahead. A ray is a direction, not normalised: its length is 1/ω, with ω the weight of the
+// piecewise method, such that what is a perspective stays one. A perspective's rays have -z = 1 (ω = -z of
+// the unit direction), a cylinder's horizontal length 1 (ω = the unit direction's), a sphere's length 1
+// (ω = 1), before off_axis.
 //
 // [Trapp & Döllner 2008, sec. 3]: V = C · (δ(F·s) − O), with C the orientation and O the off-axis vector,
 // here in the shape's own axes so that it turns with the picture. The paper's s scales the image coordinates;
@@ -17,6 +19,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "configs/model/show.h"
 #include "renderer/projection/cylinder.h"
@@ -48,6 +51,19 @@ struct Map {
 /// nullopt where the image point shows nothing (outside the fisheye's circle, beyond a full turn), and for
 /// NaN.
 [[nodiscard]] std::optional<glm::dvec3> ray(const Map& map, glm::dvec2 st);
+
+/// ray() continued beyond the limits of what is shown, for corners of pieces that hang over them: as far as
+/// it is smooth and one-to-one about the point. Outside a fisheye's circle to half a turn from its axis, past
+/// the half turn of a cylinder or of longitudes (directions then come again), not over a pole. Wherever ray()
+/// has a direction this is the same. Where the map has breaks(), the branch of `inside` is continued, an
+/// image point that shows something; elsewhere `inside` does not matter.
+[[nodiscard]] std::optional<glm::dvec3> beyond(const Map& map, glm::dvec2 st, glm::dvec2 inside);
+
+/// Values of s and of t within (-1,1), rising, across which the map is not smooth: faces that meet there.
+struct Breaks {
+  std::vector<double> s, t;
+};
+[[nodiscard]] Breaks breaks(const Map& map);
 
 /// The image point that shows a direction; it may lie outside [-1,1]². nullopt where no image point does:
 /// then ray() has no such direction. Where several do (a pole, the seam behind a full turn), one of them.

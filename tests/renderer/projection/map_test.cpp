@@ -82,6 +82,9 @@ TEST_CASE("ray, image point and ray again: random projections and points") {
     const auto direction = ray(map, st);
     if (!direction) continue;
     ++shown;
+    const auto same = beyond(map, st, st);
+    REQUIRE(same);
+    CHECK(*same == *direction);
     const auto back = image_point(map, *direction);
     REQUIRE(back);
     const auto again = ray(map, *back);

@@ -175,6 +175,33 @@ TEST_CASE("equirectangular: longitude across, latitude upwards") {
   check_shows(map_of(model::Equirectangular{{90}, {60}}, 2.0), {1, 0}, {1, 0, -1});
 }
 
+TEST_CASE("beyond what is shown the map goes on to where it ends by nature") {
+  const auto goes_on = [](const Map& map, glm::dvec2 st, glm::dvec3 direction) {
+    CAPTURE(st.x);
+    CAPTURE(st.y);
+    CHECK_FALSE(ray(map, st));
+    const auto found = beyond(map, st, {0, 0});
+    REQUIRE(found);
+    CHECK(glm::length(glm::normalize(*found) - glm::normalize(direction)) < 1e-12);
+  };
+  const Map dome = map_of(model::Fisheye{{180}}, 1.0);
+  goes_on(dome, {1.5, 0}, {1, 0, 1});
+  goes_on(dome, {0, -1.25}, {0, -1, std::tan(22.5 * degree)});
+  CHECK(beyond(dome, {1.999, 0}, {0, 0}));
+  CHECK_FALSE(beyond(dome, {2.001, 0}, {0, 0})); // over the point behind
+  CHECK_FALSE(beyond(dome, {1.5, 1.5}, {0, 0}));
+  const Map wall = map_of(model::Cylinder{{360}, {90}}, 1.0);
+  goes_on(wall, {1.25, 1}, {-1, std::sqrt(2.0), 1});
+  goes_on(wall, {-1.5, 0}, {1, 0, 0});
+  const Map globe = map_of(model::Equirectangular{{360}, {180}}, 2.0);
+  goes_on(globe, {1.25, 0}, {-1, 0, 1});
+  CHECK_FALSE(beyond(globe, {0, 1.001}, {0, 0}));                               // over a pole
+  goes_on(map_of(model::Equirectangular{{360}, {90}}, 2.0, 0, 0.5), {0.6, 0.5}, // 0.5 · 2 of 45 degrees
+          {std::sin(216 * degree) * std::cos(45 * degree), std::sin(45 * degree),
+           -std::cos(216 * degree) * std::cos(45 * degree)});
+  CHECK_FALSE(beyond(dome, {std::nan(""), 0}, {0, 0}));
+}
+
 TEST_CASE("pixel density: hand-worked values") {
   const glm::dvec2 size(1600, 1200);
   const double aspect = 4.0 / 3;
