@@ -231,6 +231,9 @@ double own_aspect(const model::Shape& shape) {
     return std::tan(flat->horizontal_fov.radians() / 2) / std::tan(flat->vertical_fov->radians() / 2);
   if (const auto* map = std::get_if<model::Equirectangular>(&shape))
     return map->horizontal_fov.degrees / map->vertical_fov.degrees;
+  if (const auto* map = std::get_if<model::Mercator>(&shape))
+    return map->horizontal_fov.radians() / 2 / std::asinh(std::tan(map->vertical_fov.radians() / 2));
+  if (std::holds_alternative<model::CubeCross>(shape)) return 4.0 / 3;
   return 0;
 }
 

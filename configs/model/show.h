@@ -146,7 +146,41 @@ struct Equirectangular {
   bool operator==(const Equirectangular&) const = default;
 };
 
-using Shape = std::variant<Perspective, Cylinder, Fisheye, Equirectangular>;
+/// Stereographic fisheye: what is small keeps its form; circle as a fisheye's.
+struct Stereographic {
+  Angle fov{180.0};
+  bool operator==(const Stereographic&) const = default;
+};
+
+/// Orthographic fisheye: a hemisphere as seen from infinitely far; circle as a fisheye's.
+struct Orthographic {
+  Angle fov{180.0};
+  bool operator==(const Orthographic&) const = default;
+};
+
+/// Longitude across, latitudes stretched so that what is small keeps its form.
+struct Mercator {
+  Angle horizontal_fov{360.0};
+  Angle vertical_fov{150.0};
+  bool operator==(const Mercator&) const = default;
+};
+
+/// A wide picture with straight verticals, seen from `distance` radii behind the eye: 0 is a perspective.
+/// vertical_fov, along the middle column, absent: pixels are square in the middle.
+struct Panini {
+  Angle horizontal_fov{150.0};
+  std::optional<Angle> vertical_fov;
+  double distance = 1.0;
+  bool operator==(const Panini&) const = default;
+};
+
+/// The six faces of a cube as a horizontal cross.
+struct CubeCross {
+  bool operator==(const CubeCross&) const = default;
+};
+
+using Shape = std::variant<Perspective, Cylinder, Fisheye, Equirectangular, Stereographic, Orthographic,
+                           Mercator, Panini, CubeCross>;
 
 struct Projection {
   Shape shape;

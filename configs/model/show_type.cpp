@@ -209,7 +209,46 @@ const Type& projection_type() {
                             Cost::rebuild, "Longitudes shown.")
                     .number("vertical_fov", &Equirectangular::vertical_fov, Unit::degree, Range{1, 180},
                             Cost::rebuild, "Latitudes shown.")
-                    .share()}})
+                    .share()},
+               {"stereographic",
+                "Stereographic fisheye, its circle inscribed in the shorter side: what is small keeps its "
+                "form.",
+                Describe<Stereographic>("stereographic", "")
+                    .number("fov", &Stereographic::fov, Unit::degree, Range{1, 350}, Cost::rebuild,
+                            "Field of view across the circle.")
+                    .share()},
+               {"orthographic",
+                "Orthographic fisheye, its circle inscribed in the shorter side: a hemisphere as seen from "
+                "infinitely far.",
+                Describe<Orthographic>("orthographic", "")
+                    .number("fov", &Orthographic::fov, Unit::degree, Range{1, 180}, Cost::rebuild,
+                            "Field of view across the circle.")
+                    .share()},
+               {"mercator", "Longitude across, latitudes stretched so that what is small keeps its form.",
+                Describe<Mercator>("mercator", "")
+                    .number("horizontal_fov", &Mercator::horizontal_fov, Unit::degree, Range{1, 360},
+                            Cost::rebuild, "Longitudes shown.")
+                    .number("vertical_fov", &Mercator::vertical_fov, Unit::degree, Range{1, 178},
+                            Cost::rebuild, "Latitudes shown.")
+                    .share()},
+               {"panini", "A wide picture with straight verticals.",
+                Describe<Panini>("panini", "")
+                    .number("horizontal_fov", &Panini::horizontal_fov, Unit::degree, Range{0.1, 350},
+                            Cost::rebuild,
+                            "Field of view across. Distances far from 1 allow less: 0 and endless ones less "
+                            "than 180.")
+                    .number("vertical_fov", &Panini::vertical_fov, Unit::degree, Range{0.1, 175},
+                            Cost::rebuild,
+                            "Field of view along the middle column; absent: pixels are square in the middle.")
+                    .number("distance", &Panini::distance, Unit::factor, Range{0, 100}, Cost::rebuild,
+                            "From how many radii behind the eye its wall is drawn: 0 is a perspective, 1 the "
+                            "usual picture.")
+                    .share()},
+               {"cube_cross",
+                "The six faces of a cube as a horizontal cross: left, front, right, back, with top and "
+                "bottom "
+                "at the front; nothing is shown beside them.",
+                Describe<CubeCross>("cube_cross", "").share()}})
           .number("zoom", &Projection::zoom, Unit::factor, Range{0.05, 100}, Cost::rebuild,
                   "Magnification about the image centre: 2 shows half the field.")
           .vector3("off_axis", &Projection::off_axis, Unit::factor, Range{-0.95, 0.95}, Cost::rebuild,

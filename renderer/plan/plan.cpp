@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -35,7 +36,9 @@ PixelRect enlarged(const PixelRect& rect, int factor) {
 }
 
 std::string_view kind(const model::Shape& shape) {
-  constexpr std::array<std::string_view, 4> names{"perspective", "cylinder", "fisheye", "equirectangular"};
+  constexpr std::array<std::string_view, std::variant_size_v<model::Shape>> names{
+      "perspective",  "cylinder", "fisheye", "equirectangular", "stereographic",
+      "orthographic", "mercator", "panini",  "cube_cross"};
   return names[shape.index()];
 }
 
@@ -61,6 +64,7 @@ private:
 
   void check_projections() {
     for (const auto& [name, projection] : show_.projections) {
+      if (!check_field(name, projection)) continue;
       if (projection::inside(projection::make_map(projection, 1.0))) continue;
       const glm::dvec3& o = projection.off_axis;
       const bool cylinder = std::holds_alternative<model::Cylinder>(projection.shape);
@@ -71,6 +75,19 @@ private:
              fmt::format("length {:.4g}", cylinder ? std::hypot(o.x, o.z) : std::hypot(o.x, o.y, o.z)),
              "Shorten the vector.");
     }
+  }
+
+  /// Fields of view whose greatest value depends on another parameter.
+  bool check_field(const std::string& name, const model::Projection& projection) {
+    const auto* wide = std::get_if<model::Panini>(&projection.shape);
+    if (!wide) return true;
+    const double most = projection::panini_limit(wide->distance) * 360.0 / std::numbers::pi - 1.0;
+    if (wide->horizontal_fov.degrees <= most) return true;
+    report(Code::degenerate_projection, "/projections/" + name + "/horizontal_fov",
+           fmt::format("at most {:.4g} degrees with a distance of {:.4g}", most, wide->distance),
+           fmt::format("{:.4g}", wide->horizontal_fov.degrees),
+           "Narrow the field of view, or bring the distance nearer to 1.");
+    return false;
   }
 
   void add_output(const std::string& name, const model::Output& output) {

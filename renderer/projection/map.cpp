@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <type_traits>
 
 namespace cupola::projection {
 
@@ -18,6 +19,7 @@ template <class... F>
 Overload(F...) -> Overload<F...>;
 
 ShapeMap make_shape(const model::Shape& shape, double aspect) {
+  const glm::dvec2 circle(std::max(aspect, 1.0), std::max(1.0 / aspect, 1.0)); // in the shorter side
   return std::visit(
       Overload{[&](const model::Perspective& p) -> ShapeMap {
                  const double across = std::tan(p.horizontal_fov.radians() / 2);
@@ -28,11 +30,28 @@ ShapeMap make_shape(const model::Shape& shape, double aspect) {
                  return CylinderMap{c.horizontal_fov.radians() / 2, std::tan(c.vertical_fov.radians() / 2)};
                },
                [&](const model::Fisheye& f) -> ShapeMap {
-                 return FisheyeMap{f.fov.radians() / 2, std::max(aspect, 1.0), std::max(1.0 / aspect, 1.0)};
+                 return FisheyeMap{f.fov.radians() / 2, circle.x, circle.y};
                },
                [](const model::Equirectangular& e) -> ShapeMap {
                  return EquirectangularMap{e.horizontal_fov.radians() / 2, e.vertical_fov.radians() / 2};
-               }},
+               },
+               [&](const model::Stereographic& f) -> ShapeMap {
+                 return StereographicMap{std::tan(f.fov.radians() / 4), circle.x, circle.y};
+               },
+               [&](const model::Orthographic& f) -> ShapeMap {
+                 return OrthographicMap{std::sin(f.fov.radians() / 2), circle.x, circle.y};
+               },
+               [](const model::Mercator& m) -> ShapeMap {
+                 return MercatorMap{m.horizontal_fov.radians() / 2,
+                                    std::asinh(std::tan(m.vertical_fov.radians() / 2))};
+               },
+               [&](const model::Panini& p) -> ShapeMap {
+                 const double across = panini_x(p.horizontal_fov.radians() / 2, p.distance);
+                 return PaniniMap{across,
+                                  p.vertical_fov ? std::tan(p.vertical_fov->radians() / 2) : across / aspect,
+                                  p.distance};
+               },
+               [](const model::CubeCross&) -> ShapeMap { return CubeCrossMap{}; }},
       shape);
 }
 
@@ -61,16 +80,26 @@ std::optional<glm::dvec3> shape_ray(const Map& map, glm::dvec2 st) {
       Overload{[&](const PerspectiveMap& shape) { return perspective_ray(shape, st, map.zoom); },
                [&](const CylinderMap& shape) { return cylinder_ray(shape, st, map.zoom); },
                [&](const FisheyeMap& shape) { return fisheye_ray(shape, st, map.zoom); },
-               [&](const EquirectangularMap& shape) { return equirectangular_ray(shape, st, map.zoom); }},
+               [&](const EquirectangularMap& shape) { return equirectangular_ray(shape, st, map.zoom); },
+               [&](const StereographicMap& shape) { return stereographic_ray(shape, st, map.zoom); },
+               [&](const OrthographicMap& shape) { return orthographic_ray(shape, st, map.zoom); },
+               [&](const MercatorMap& shape) { return mercator_ray(shape, st, map.zoom); },
+               [&](const PaniniMap& shape) { return panini_ray(shape, st, map.zoom); },
+               [&](const CubeCrossMap& shape) { return cube_cross_ray(shape, st, map.zoom); }},
       map.shape);
 }
 
-std::optional<glm::dvec3> shape_beyond(const Map& map, glm::dvec2 st) {
+std::optional<glm::dvec3> shape_beyond(const Map& map, glm::dvec2 st, glm::dvec2 inside) {
   return std::visit(
       Overload{[&](const PerspectiveMap& shape) { return perspective_ray(shape, st, map.zoom); },
                [&](const CylinderMap& shape) { return cylinder_beyond(shape, st, map.zoom); },
                [&](const FisheyeMap& shape) { return fisheye_beyond(shape, st, map.zoom); },
-               [&](const EquirectangularMap& shape) { return equirectangular_beyond(shape, st, map.zoom); }},
+               [&](const EquirectangularMap& shape) { return equirectangular_beyond(shape, st, map.zoom); },
+               [&](const StereographicMap& shape) { return stereographic_beyond(shape, st, map.zoom); },
+               [&](const OrthographicMap& shape) { return orthographic_beyond(shape, st, map.zoom); },
+               [&](const MercatorMap& shape) { return mercator_beyond(shape, st, map.zoom); },
+               [&](const PaniniMap& shape) { return panini_ray(shape, st, map.zoom); },
+               [&](const CubeCrossMap& shape) { return cube_cross_beyond(shape, st, map.zoom, inside); }},
       map.shape);
 }
 
@@ -91,7 +120,30 @@ std::optional<glm::dvec2> shape_point(const Map& map, const glm::dvec3& directio
           [&](const FisheyeMap& shape) { return fisheye_point(shape, eye, direction, map.zoom); },
           [&](const EquirectangularMap& shape) {
             return equirectangular_point(shape, eye, direction, map.zoom);
-          }},
+          },
+          [&](const StereographicMap& shape) { return stereographic_point(shape, eye, direction, map.zoom); },
+          [&](const OrthographicMap& shape) { return orthographic_point(shape, eye, direction, map.zoom); },
+          [&](const MercatorMap& shape) { return mercator_point(shape, eye, direction, map.zoom); },
+          [&](const PaniniMap& shape) { return panini_point(shape, eye, direction, map.zoom); },
+          [&](const CubeCrossMap& shape) { return cube_cross_point(shape, eye, direction, map.zoom); }},
+      map.shape);
+}
+
+/// From the eye to where the shape is farthest, as far as matched_density goes.
+double farthest(const Map& map) {
+  const glm::dvec3& eye = map.off_axis;
+  return std::visit(
+      [&](const auto& shape) {
+        using Shape = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<Shape, PerspectiveMap> || std::is_same_v<Shape, PaniniMap>)
+          return 1.0 + eye.z;
+        else if constexpr (std::is_same_v<Shape, CylinderMap>)
+          return 1.0 + std::hypot(eye.x, eye.z);
+        else if constexpr (std::is_same_v<Shape, CubeCrossMap>)
+          return 1.0 + std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)});
+        else
+          return 1.0 + glm::length(eye);
+      },
       map.shape);
 }
 
@@ -126,8 +178,11 @@ bool inside(const Map& map) {
   const glm::dvec3& eye = map.off_axis;
   return std::visit(Overload{[&](const PerspectiveMap&) { return eye.z > -1.0; },
                              [&](const CylinderMap&) { return eye.x * eye.x + eye.z * eye.z < 1.0; },
-                             [&](const FisheyeMap&) { return glm::dot(eye, eye) < 1.0; },
-                             [&](const EquirectangularMap&) { return glm::dot(eye, eye) < 1.0; }},
+                             [&](const PaniniMap& shape) { return panini_inside(shape, eye); },
+                             [&](const CubeCrossMap&) {
+                               return std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)}) < 1.0;
+                             },
+                             [&](const auto&) { return glm::dot(eye, eye) < 1.0; }}, // spheres
                     map.shape);
 }
 
@@ -138,13 +193,17 @@ std::optional<glm::dvec3> ray(const Map& map, glm::dvec2 st) {
 
 std::optional<glm::dvec3> beyond(const Map& map, glm::dvec2 st, glm::dvec2 inside) {
   if (!std::isfinite(st.x) || !std::isfinite(st.y)) return std::nullopt;
-  static_cast<void>(inside); // no shape has breaks
-  return seen_from_eye(map, shape_beyond(map, st));
+  return seen_from_eye(map, shape_beyond(map, st, inside));
 }
 
 Breaks breaks(const Map& map) {
-  static_cast<void>(map);
-  return {};
+  Breaks out;
+  if (!std::holds_alternative<CubeCrossMap>(map.shape)) return out;
+  for (const double border : {-0.5, 0.0, 0.5})
+    if (std::abs(border * map.zoom) < 1.0) out.s.push_back(border * map.zoom);
+  for (const double border : {-1.0 / 3.0, 1.0 / 3.0})
+    if (std::abs(border * map.zoom) < 1.0) out.t.push_back(border * map.zoom);
+  return out;
 }
 
 std::optional<glm::dvec2> image_point(const Map& map, const glm::dvec3& direction) {
@@ -174,13 +233,14 @@ double matched_density(const Map& map, glm::dvec2 size_px) {
       Overload{[&](const PerspectiveMap& shape) { return perspective_density(shape, size_px); },
                [&](const CylinderMap& shape) { return cylinder_density(shape, size_px); },
                [&](const FisheyeMap& shape) { return fisheye_density(shape, size_px); },
-               [&](const EquirectangularMap& shape) { return equirectangular_density(shape, size_px); }},
+               [&](const EquirectangularMap& shape) { return equirectangular_density(shape, size_px); },
+               [&](const StereographicMap& shape) { return stereographic_density(shape, size_px); },
+               [&](const OrthographicMap& shape) { return orthographic_density(shape, size_px); },
+               [&](const MercatorMap& shape) { return mercator_density(shape, size_px); },
+               [&](const PaniniMap& shape) { return panini_density(shape, size_px); },
+               [&](const CubeCrossMap& shape) { return cube_cross_density(shape, size_px); }},
       map.shape);
-  const glm::dvec3& eye = map.off_axis;
-  const double farthest = std::holds_alternative<PerspectiveMap>(map.shape) ? 1.0 + eye.z
-                          : std::holds_alternative<CylinderMap>(map.shape)  ? 1.0 + std::hypot(eye.x, eye.z)
-                                                                            : 1.0 + glm::length(eye);
-  return own * map.zoom * farthest;
+  return own * map.zoom * farthest(map);
 }
 
 MapUniforms uniforms(const Map& map) {
@@ -190,7 +250,12 @@ MapUniforms uniforms(const Map& map) {
       Overload{[](const PerspectiveMap& s) { return glm::dvec4(s.tan_half_h, s.tan_half_v, 0.0, 0.0); },
                [](const CylinderMap& s) { return glm::dvec4(s.half_h, s.tan_half_v, 0.0, 0.0); },
                [](const FisheyeMap& s) { return glm::dvec4(s.half_fov, s.scale_s, s.scale_t, 0.0); },
-               [](const EquirectangularMap& s) { return glm::dvec4(s.half_h, s.half_v, 0.0, 0.0); }},
+               [](const EquirectangularMap& s) { return glm::dvec4(s.half_h, s.half_v, 0.0, 0.0); },
+               [](const StereographicMap& s) { return glm::dvec4(s.tan_quarter, s.scale_s, s.scale_t, 0.0); },
+               [](const OrthographicMap& s) { return glm::dvec4(s.sin_half, s.scale_s, s.scale_t, 0.0); },
+               [](const MercatorMap& s) { return glm::dvec4(s.half_h, s.half_up, 0.0, 0.0); },
+               [](const PaniniMap& s) { return glm::dvec4(s.half_x, s.half_y, s.distance, 0.0); },
+               [](const CubeCrossMap&) { return glm::dvec4(0.0); }},
       map.shape));
   out.zoom = static_cast<float>(map.zoom);
   out.off_axis = glm::vec3(map.off_axis);

@@ -1,10 +1,20 @@
 // twin of map.cpp. The uniforms hold projection::uniforms(map); their locations are MapUniforms's.
+// A program for one shape defines MAP_SHAPE: drivers that compute all branches then compute one.
 #include "renderer/projection/perspective.glsl"
 #include "renderer/projection/cylinder.glsl"
 #include "renderer/projection/fisheye.glsl"
 #include "renderer/projection/equirectangular.glsl"
+#include "renderer/projection/stereographic.glsl"
+#include "renderer/projection/orthographic.glsl"
+#include "renderer/projection/mercator.glsl"
+#include "renderer/projection/panini.glsl"
+#include "renderer/projection/cube_cross.glsl"
 
+#ifdef MAP_SHAPE
+const int map_shape = MAP_SHAPE;
+#else
 layout(location = 16) uniform int map_shape; // order of Map::shape
+#endif
 layout(location = 17) uniform vec4 map_parameters;
 layout(location = 18) uniform float map_zoom;
 layout(location = 19) uniform vec3 map_off_axis;
@@ -14,14 +24,24 @@ bool shape_ray(vec2 st, out vec3 ray) {
   if (map_shape == 0) return perspective_ray(map_parameters, st, map_zoom, ray);
   if (map_shape == 1) return cylinder_ray(map_parameters, st, map_zoom, ray);
   if (map_shape == 2) return fisheye_ray(map_parameters, st, map_zoom, ray);
-  return equirectangular_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 3) return equirectangular_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 4) return stereographic_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 5) return orthographic_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 6) return mercator_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 7) return panini_ray(map_parameters, st, map_zoom, ray);
+  return cube_cross_ray(map_parameters, st, map_zoom, ray);
 }
 
 bool shape_point(vec3 direction, out vec2 st) {
   if (map_shape == 0) return perspective_point(map_parameters, map_off_axis, direction, map_zoom, st);
   if (map_shape == 1) return cylinder_point(map_parameters, map_off_axis, direction, map_zoom, st);
   if (map_shape == 2) return fisheye_point(map_parameters, map_off_axis, direction, map_zoom, st);
-  return equirectangular_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 3) return equirectangular_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 4) return stereographic_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 5) return orthographic_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 6) return mercator_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 7) return panini_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  return cube_cross_point(map_parameters, map_off_axis, direction, map_zoom, st);
 }
 
 // twin of map.cpp: ray. False where the image point shows nothing; direction is then (0, 0, -1).

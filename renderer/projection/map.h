@@ -5,7 +5,7 @@
 // y up, -z ahead. A ray is a direction, not normalised: its length is 1/ω, with ω the weight of the
 // piecewise method, such that what is a perspective stays one. A perspective's rays have -z = 1 (ω = -z of
 // the unit direction), a cylinder's horizontal length 1 (ω = the unit direction's), a sphere's length 1
-// (ω = 1), before off_axis.
+// (ω = 1), before off_axis. Where a shape is no sphere its file says what its rays end on.
 //
 // [Trapp & Döllner 2008, sec. 3]: V = C · (δ(F·s) − O), with C the orientation and O the off-axis vector,
 // here in the shape's own axes so that it turns with the picture. The paper's s scales the image coordinates;
@@ -22,14 +22,20 @@
 #include <vector>
 
 #include "configs/model/show.h"
+#include "renderer/projection/cube_cross.h"
 #include "renderer/projection/cylinder.h"
 #include "renderer/projection/equirectangular.h"
 #include "renderer/projection/fisheye.h"
+#include "renderer/projection/mercator.h"
+#include "renderer/projection/orthographic.h"
+#include "renderer/projection/panini.h"
 #include "renderer/projection/perspective.h"
+#include "renderer/projection/stereographic.h"
 
 namespace cupola::projection {
 
-using ShapeMap = std::variant<PerspectiveMap, CylinderMap, FisheyeMap, EquirectangularMap>;
+using ShapeMap = std::variant<PerspectiveMap, CylinderMap, FisheyeMap, EquirectangularMap, StereographicMap,
+                              OrthographicMap, MercatorMap, PaniniMap, CubeCrossMap>;
 
 struct Map {
   ShapeMap shape;
@@ -45,18 +51,20 @@ struct Map {
 [[nodiscard]] glm::dmat3 rotation(const model::Orientation& orientation);
 
 /// Whether the off-axis vector leaves the eye inside the shape: before the plane, inside the cylinder or
-/// sphere of radius 1. Outside, image points lose their one-to-one relation to directions.
+/// sphere of radius 1, the cube, before the conic. Outside, image points lose their one-to-one relation to
+/// directions.
 [[nodiscard]] bool inside(const Map& map);
 
-/// nullopt where the image point shows nothing (outside the fisheye's circle, beyond a full turn), and for
-/// NaN.
+/// nullopt where the image point shows nothing (outside the fisheye's circle, beyond a full turn, beside a
+/// cross), and for NaN.
 [[nodiscard]] std::optional<glm::dvec3> ray(const Map& map, glm::dvec2 st);
 
 /// ray() continued beyond the limits of what is shown, for corners of pieces that hang over them: as far as
 /// it is smooth and one-to-one about the point. Outside a fisheye's circle to half a turn from its axis, past
-/// the half turn of a cylinder or of longitudes (directions then come again), not over a pole. Wherever ray()
-/// has a direction this is the same. Where the map has breaks(), the branch of `inside` is continued, an
-/// image point that shows something; elsewhere `inside` does not matter.
+/// the half turn of a cylinder or of longitudes (directions then come again); not over a pole, nor over the
+/// right angle where an orthographic fisheye ends. Wherever ray() has a direction this is the same. Where the
+/// map has breaks() it is the continuation of the face that `inside` lies on, an image point that shows
+/// something, over all others; elsewhere `inside` does not matter.
 [[nodiscard]] std::optional<glm::dvec3> beyond(const Map& map, glm::dvec2 st, glm::dvec2 inside);
 
 /// Values of s and of t within (-1,1), rising, across which the map is not smooth: faces that meet there.
@@ -73,11 +81,13 @@ struct Breaks {
 /// infinite at a pole of an equirectangular picture.
 [[nodiscard]] double pixel_density(const Map& map, glm::dvec2 st, glm::dvec2 size_px);
 
-/// Pixels per radian along the lines on which the shape counts its angles in equal steps: at the centre of a
-/// perspective, along the horizon of a cylinder, a radius of a fisheye, the equator of an equirectangular
-/// picture; the greater of both directions, and where the wall is farthest from an eye off its centre. This
-/// is the density that a cubemap is matched to: elsewhere (towards a pole, a rim, a tall picture's top)
-/// pixels crowd without limit, and hold no more detail for it.
+/// Pixels per radian along the lines on which the shape counts its angles in equal steps: along the horizon
+/// of a cylinder, a radius of a fisheye, the equator of an equirectangular picture or of Mercator's. Where it
+/// has none: at the centre of a perspective, an orthographic fisheye and a face of a cross, half way to the
+/// edge of a stereographic fisheye and of Panini's picture, which grow outwards. The greater of both
+/// directions, and where the wall is farthest from an eye off its centre. This is the density that a cubemap
+/// is matched to: elsewhere (towards a pole, a rim, a tall picture's top) pixels crowd without limit, and
+/// hold no more detail for it.
 [[nodiscard]] double matched_density(const Map& map, glm::dvec2 size_px);
 
 /// A map as uniforms of map.glsl, which fixes their locations.

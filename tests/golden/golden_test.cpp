@@ -39,6 +39,16 @@ std::vector<Case> cases() {
   all.back().projection.orientation.pitch.degrees = 90.0;
   all.push_back({"fisheye-wide", shaped(model::Fisheye{{270.0}}), 256, 256, false, 24.0});
   all.push_back({"equirectangular", shaped(model::Equirectangular{{360.0}, {180.0}}), 400, 200, false, 24.0});
+  all.push_back({"stereographic", shaped(model::Stereographic{{240.0}}), 300, 240, false, 24.0});
+  all.back().projection.orientation.pitch.degrees = -90.0; // a small planet
+  all.push_back({"orthographic", shaped(model::Orthographic{{180.0}}), 300, 240, false, 24.0});
+  all.push_back({"mercator", shaped(model::Mercator{{360.0}, {140.0}}), 360, 200, false, 24.0});
+  all.push_back({"panini", shaped(model::Panini{{200.0}, std::nullopt, 1.0}), 400, 200, false, 24.0});
+  Case leaning{"panini-turned", shaped(model::Panini{{150.0}, std::nullopt, 0.6}), 300, 200, false, 24.0};
+  leaning.projection.off_axis = {0.3, 0.1, -0.2};
+  leaning.projection.orientation = {{-30.0}, {10.0}, {-8.0}};
+  all.push_back(leaning);
+  all.push_back({"cube-cross", shaped(model::CubeCross{}), 400, 300, false, 24.0});
   return all;
 }
 

@@ -159,5 +159,9 @@ TEST_CASE("aspect: stretched by more than two percent is a warning") {
   CHECK_FALSE(warned({{"kind", "perspective"}, {"horizontal_fov", 90}}, 100, 1000));
   CHECK_FALSE(warned({{"kind", "equirectangular"}}, 2000, 1000));
   CHECK(warned({{"kind", "equirectangular"}}, 2000, 1100));
+  CHECK_FALSE(warned({{"kind", "mercator"}, {"vertical_fov", 90}}, 1000, 281)); // π : asinh(1)
+  CHECK(warned({{"kind", "mercator"}, {"vertical_fov", 90}}, 1000, 500));
+  CHECK_FALSE(warned({{"kind", "cube_cross"}}, 800, 600));
+  CHECK(warned({{"kind", "cube_cross"}}, 800, 500));
   CHECK_FALSE(warned({{"kind", "fisheye"}}, 2000, 1100)); // its circle is inscribed
 }

@@ -43,9 +43,17 @@ TEST_CASE("every show of the tree: parse, write, parse") {
 TEST_CASE("every alternative") {
   const std::vector<model::Content> contents{model::City{7, 1000}, model::Room{3.5},
                                              model::Gltf{"b.glb", "x", 2}};
-  const std::vector<model::Shape> shapes{
-      model::Perspective{{80}, {}}, model::Perspective{{80}, model::Angle{50}},
-      model::Cylinder{{359.9}, {0.1}}, model::Fisheye{{400.0 / 3}}, model::Equirectangular{{12}, {34}}};
+  const std::vector<model::Shape> shapes{model::Perspective{{80}, {}},
+                                         model::Perspective{{80}, model::Angle{50}},
+                                         model::Cylinder{{359.9}, {0.1}},
+                                         model::Fisheye{{400.0 / 3}},
+                                         model::Equirectangular{{12}, {34}},
+                                         model::Stereographic{{300}},
+                                         model::Orthographic{{99}},
+                                         model::Mercator{{300}, {120.5}},
+                                         model::Panini{{200}, {}, 0.75},
+                                         model::Panini{{160}, model::Angle{80}, 1.5},
+                                         model::CubeCross{}};
   const std::vector<model::Sink> sinks{model::AutoOutput{}, model::HeadlessOutput{},
                                        model::WindowOutput{"DP-1", true, false, false, -5, 7},
                                        model::FilesOutput{"d", "tif", 3}};

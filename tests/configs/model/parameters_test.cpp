@@ -21,7 +21,8 @@ Show furnished(std::size_t number) {
   show.scene.content = std::array<Content, 3>{City{}, Room{}, Gltf{"a.glb", "", 1.0}}[number % 3];
   show.camera.path = {{0.0, {1, 2, 3}, {}, {}}, {2.5, {4, 5, 6}, {}, glm::dvec3(1, 0, 0)}};
   show.projections["wall"].shape =
-      std::array<Shape, 4>{Perspective{}, Cylinder{}, Fisheye{}, Equirectangular{}}[number % 4];
+      std::array<Shape, 9>{Perspective{},  Cylinder{}, Fisheye{}, Equirectangular{}, Stereographic{},
+                           Orthographic{}, Mercator{}, Panini{},  CubeCross{}}[number % 9];
   show.projections["b.2"].shape = Fisheye{};
   Output output;
   output.sink =
@@ -31,7 +32,7 @@ Show furnished(std::size_t number) {
   show.outputs["main"] = output;
   return show;
 }
-constexpr std::size_t furnishings = 12;
+constexpr std::size_t furnishings = 36;
 
 /// Another valid value than `value`.
 Json another(const Parameter& row, const Json& value) {

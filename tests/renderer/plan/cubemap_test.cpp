@@ -152,10 +152,10 @@ TEST_CASE("what a picture reads is in the crops, with little waste") {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   double total = 0;
-  const int rounds = 80;
+  const int rounds = 180;
   for (int i = 0; i < rounds; ++i) {
     model::Projection p;
-    switch (i % 4) {
+    switch (i % 9) {
     case 0:
       p.shape = model::Perspective{{number(5, 170)}, {}};
       break;
@@ -165,8 +165,23 @@ TEST_CASE("what a picture reads is in the crops, with little waste") {
     case 2:
       p.shape = model::Fisheye{{number(5, 360)}};
       break;
-    default:
+    case 3:
       p.shape = model::Equirectangular{{number(5, 360)}, {number(5, 180)}};
+      break;
+    case 4:
+      p.shape = model::Stereographic{{number(5, 350)}};
+      break;
+    case 5:
+      p.shape = model::Orthographic{{number(5, 180)}};
+      break;
+    case 6:
+      p.shape = model::Mercator{{number(5, 360)}, {number(5, 178)}};
+      break;
+    case 7:
+      p.shape = model::Panini{{number(5, 250)}, {}, number(0.8, 1.2)};
+      break;
+    default:
+      p.shape = model::CubeCross{};
       break;
     }
     p.zoom = std::exp(number(-2, 1));

@@ -27,7 +27,7 @@ model::Projection random_projection(std::mt19937& random) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   model::Projection p;
-  switch (random() % 4) {
+  switch (random() % 9) {
   case 0: {
     model::Perspective shape{{number(0.1, 175)}, {}};
     if (random() % 2) shape.vertical_fov = model::Angle{number(0.1, 175)};
@@ -40,8 +40,26 @@ model::Projection random_projection(std::mt19937& random) {
   case 2:
     p.shape = model::Fisheye{{number(1, 360)}};
     break;
-  default:
+  case 3:
     p.shape = model::Equirectangular{{number(1, 360)}, {number(1, 180)}};
+    break;
+  case 4:
+    p.shape = model::Stereographic{{number(1, 350)}};
+    break;
+  case 5:
+    p.shape = model::Orthographic{{number(1, 180)}};
+    break;
+  case 6:
+    p.shape = model::Mercator{{number(1, 360)}, {number(1, 178)}};
+    break;
+  case 7: {
+    const double distance = random() % 2 ? number(0, 1) : std::exp(number(0, 3));
+    const double limit = panini_limit(distance) * 360 / pi - 1;
+    p.shape = model::Panini{{number(0.1, limit)}, {}, distance};
+    break;
+  }
+  default:
+    p.shape = model::CubeCross{};
     break;
   }
   p.zoom = std::exp(number(std::log(0.05), std::log(100.0)));
@@ -89,10 +107,14 @@ TEST_CASE("ray, image point and ray again: random projections and points") {
     REQUIRE(back);
     const auto again = ray(map, *back);
     REQUIRE(again);
-    // Off-axis to 0.95 magnifies angles up to 1 / 0.05.
-    CHECK(angle(*direction, *again) < 1e-9);
+    // Off-axis to 0.95 magnifies angles up to 1 / 0.05; these two crowd directions towards their end.
+    const bool crowds =
+        std::holds_alternative<OrthographicMap>(map.shape) || std::holds_alternative<PaniniMap>(map.shape);
+    CHECK(angle(*direction, *again) < (crowds ? 1e-6 : 1e-9));
     // Image coordinates are as good, except where a rim or pole crowds them.
-    if (!std::holds_alternative<EquirectangularMap>(map.shape)) CHECK(glm::length(*back - st) < 1e-6);
+    if (!std::holds_alternative<EquirectangularMap>(map.shape) &&
+        !std::holds_alternative<MercatorMap>(map.shape))
+      CHECK(glm::length(*back - st) < 1e-6);
   }
   CHECK(shown > 10'000);
 }
@@ -109,7 +131,9 @@ TEST_CASE("image point, ray and image point again: random directions") {
     ++found;
     const auto back = ray(map, *st);
     // A seam at half a turn may lie a rounding beyond it.
-    if (back) CHECK(angle(direction, *back) < 1e-9);
+    const bool crowds =
+        std::holds_alternative<OrthographicMap>(map.shape) || std::holds_alternative<PaniniMap>(map.shape);
+    if (back) CHECK(angle(direction, *back) < (crowds ? 1e-6 : 1e-9));
     if (!back) CHECK(ray(map, *st * (1.0 - 1e-12)));
   }
   CHECK(found > 5'000);
@@ -117,8 +141,11 @@ TEST_CASE("image point, ray and image point again: random directions") {
 
 TEST_CASE("nonsense in, nothing out") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  for (const model::Shape& shape : {model::Shape(model::Perspective{}), model::Shape(model::Cylinder{}),
-                                    model::Shape(model::Fisheye{}), model::Shape(model::Equirectangular{})}) {
+  for (const model::Shape& shape :
+       {model::Shape(model::Perspective{}), model::Shape(model::Cylinder{}), model::Shape(model::Fisheye{}),
+        model::Shape(model::Equirectangular{}), model::Shape(model::Stereographic{}),
+        model::Shape(model::Orthographic{}), model::Shape(model::Mercator{}), model::Shape(model::Panini{}),
+        model::Shape(model::CubeCross{})}) {
     model::Projection projection;
     projection.shape = shape;
     const Map map = make_map(projection, 1.5);
@@ -146,7 +173,7 @@ TEST_CASE("extreme parameters never give NaN") {
   };
   for (int i = 0; i < 20'000; ++i) {
     model::Projection p;
-    switch (random() % 4) {
+    switch (random() % 9) {
     case 0:
       p.shape = model::Perspective{{pick({0.1, 90, 175})}, model::Angle{pick({0.1, 175})}};
       break;
@@ -156,8 +183,23 @@ TEST_CASE("extreme parameters never give NaN") {
     case 2:
       p.shape = model::Fisheye{{pick({1, 180, 360})}};
       break;
-    default:
+    case 3:
       p.shape = model::Equirectangular{{pick({1, 360})}, {pick({1, 180})}};
+      break;
+    case 4:
+      p.shape = model::Stereographic{{pick({1, 180, 350})}};
+      break;
+    case 5:
+      p.shape = model::Orthographic{{pick({1, 90, 180})}};
+      break;
+    case 6:
+      p.shape = model::Mercator{{pick({1, 360})}, {pick({1, 178})}};
+      break;
+    case 7:
+      p.shape = model::Panini{{pick({0.1, 170})}, model::Angle{pick({0.1, 175})}, pick({0, 1, 100})};
+      break;
+    default:
+      p.shape = model::CubeCross{};
       break;
     }
     p.zoom = pick({0.05, 0.5, 1, 100});

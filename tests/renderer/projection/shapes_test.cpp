@@ -200,6 +200,131 @@ TEST_CASE("beyond what is shown the map goes on to where it ends by nature") {
           {std::sin(216 * degree) * std::cos(45 * degree), std::sin(45 * degree),
            -std::cos(216 * degree) * std::cos(45 * degree)});
   CHECK_FALSE(beyond(dome, {std::nan(""), 0}, {0, 0}));
+  goes_on(map_of(model::Stereographic{{180}}, 1.0), {3, 0},
+          {3.0 / 5, 0, 4.0 / 5}); // tan of half the angle: 3
+  goes_on(map_of(model::Orthographic{{60}}, 1.0), {0, 1.5}, {0, 0.75, -std::sqrt(1 - 0.75 * 0.75)});
+  CHECK_FALSE(beyond(map_of(model::Orthographic{{60}}, 1.0), {0, 2.001}, {0, 0})); // 90 degrees
+  goes_on(map_of(model::Mercator{{360}, {90}}, 1.0), {1.5, 0}, {-1, 0, 0});
+}
+
+TEST_CASE("stereographic: the tangent of half the angle grows with the radius") {
+  const Map map = map_of(model::Stereographic{{180}}, 1.0);
+  check_shows(map, {0, 0}, {0, 0, -1});
+  check_shows(map, {1, 0}, {1, 0, 0});
+  check_shows(map, {0, -std::tan(22.5 * degree)}, {0, -1, -1});
+  CHECK_FALSE(ray(map, {0.8, 0.8}));
+  CHECK_FALSE(image_point(map, {0, 0, 1}));
+  CHECK_FALSE(image_point(map, {1, 0, 0.01}));
+  const Map wide = map_of(model::Stereographic{{270}}, 2.0); // the circle across half the width
+  check_shows(wide, {0.5, 0}, {1, 0, 1});
+  check_shows(wide, {0, 1}, {0, 1, 1});
+  check_shows(map_of(model::Stereographic{{180}}, 1.0, 0, 2.0), {1, 0}, {4.0 / 5, 0, -3.0 / 5});
+  check_shows(map_of(model::Stereographic{{180}}, 1.0, 0, 1.0, {0.8, 0, 0}), {1, 0}, {0.2, 0, 0});
+  CHECK(pixel_density(map, {0, 0}, {1000, 1000}) == doctest::Approx(250).epsilon(1e-5));
+  CHECK(pixel_density(map, {1, 0}, {1000, 1000}) == doctest::Approx(500).epsilon(1e-5)); // twice at the rim
+  CHECK(matched_density(map, {1000, 1000}) == doctest::Approx(250 * 1.25)); // 1 + tan² at half the radius
+}
+
+TEST_CASE("orthographic: the sine of the angle grows with the radius, to a right angle") {
+  const Map map = map_of(model::Orthographic{{180}}, 1.0);
+  check_shows(map, {0, 0}, {0, 0, -1});
+  check_shows(map, {0.5, 0}, {0.5, 0, -std::sqrt(0.75)});
+  check_shows(map, {0, -0.8}, {0, -0.8, -0.6});
+  CHECK(ray(map, {1, 0})->z == 0.0);
+  CHECK_FALSE(image_point(map, {0, 0, 1}));
+  CHECK_FALSE(image_point(map, {0.1, 0, 1})); // not the same as ahead
+  CHECK_FALSE(ray(map_of(model::Orthographic{{180}}, 1.0, 0, 0.5), {0.501, 0}));
+  check_shows(map_of(model::Orthographic{{60}}, 0.5), {1, 0}, {0.5, 0, -std::sqrt(0.75)});
+  check_shows(map_of(model::Orthographic{{60}}, 0.5), {0, 0.5}, {0, 0.5, -std::sqrt(0.75)});
+  check_shows(map_of(model::Orthographic{{180}}, 1.0, 0, 1.0, {0, 0, 0.5}), {0.6, 0}, {0.6, 0, -1.3});
+  CHECK(pixel_density(map, {0, 0}, {1000, 1000}) == doctest::Approx(500).epsilon(1e-5));
+  CHECK(matched_density(map, {1000, 1000}) == doctest::Approx(500));
+}
+
+TEST_CASE("mercator: conformal, the poles far away") {
+  const Map map = map_of(model::Mercator{{360}, {90}}, 1.0);
+  check_shows(map, {0, 0}, {0, 0, -1});
+  check_shows(map, {0.5, 0}, {1, 0, 0});
+  check_shows(map, {0, 1}, {0, 1, -1});
+  check_shows(map, {-0.25, -1}, {-1, -std::sqrt(2.0), -1});
+  CHECK_FALSE(ray(map, {1.001, 0}));
+  CHECK_FALSE(image_point(map, {0, 1, 0}));
+  check_shows(map, {0, std::asinh(std::tan(80 * degree)) / std::asinh(1.0)},
+              {0, std::sin(80 * degree), -std::cos(80 * degree)}); // outside the picture it goes on
+  check_shows(map_of(model::Mercator{{360}, {90}}, 1.0, 0, 1.0, {0.5, 0, 0}), {0.5, 0}, {0.5, 0, 0});
+  // Square pixels anywhere: 2π across, 2 asinh(1) upwards.
+  const glm::dvec2 size(1000, 1000 * std::asinh(1.0) / pi);
+  const double equator = 1000 / (2 * pi);
+  CHECK(pixel_density(map, {0, 0}, size) == doctest::Approx(equator).epsilon(1e-5));
+  CHECK(pixel_density(map, {0.3, 1}, size) == doctest::Approx(equator * std::sqrt(2.0)).epsilon(1e-5));
+  CHECK(matched_density(map, size) == doctest::Approx(equator));
+}
+
+TEST_CASE("panini: from a perspective to the picture of a wall") {
+  const Map flat = map_of(model::Panini{{90}, {}, 0.0}, 2.0);
+  check_shows(flat, {1, 1}, {1, 0.5, -1});
+  CHECK(glm::length(*ray(flat, {0.3, -0.7}) - glm::dvec3(0.3, -0.35, -1)) < 1e-15); // the weight too
+  const Map map = map_of(model::Panini{{180}, model::Angle{90}, 1.0}, 1.0);         // x = 2 tan(azimuth / 2)
+  check_shows(map, {0, 0}, {0, 0, -1});
+  check_shows(map, {1, 0}, {1, 0, 0});
+  check_shows(map, {0, 1}, {0, 1, -1});
+  check_shows(map, {std::tan(22.5 * degree), 0}, {1, 0, -1});
+  check_shows(map, {1, 1}, {2, 1, 0}); // S = 2 at 90 degrees: the wall's height is halved
+  CHECK_FALSE(image_point(map, {0, 0, 1}));
+  CHECK_FALSE(image_point(map, {0, 1, 0}));
+  check_shows(map, {-std::tan(85 * degree), 0}, {-std::sin(170 * degree), 0, -std::cos(170 * degree)});
+  // The wall is then a parabola with the eye at its focus: at +x it is 2 away.
+  check_shows(map_of(model::Panini{{180}, model::Angle{90}, 1.0}, 1.0, 0, 1.0, {0.5, 0.25, 0}), {1, 0},
+              {1.5, -0.25, 0});
+  const Map far = map_of(model::Panini{{150}, model::Angle{90}, 4.0}, 1.0);
+  const double limit = panini_limit(4.0); // about 104.5 degrees
+  check_shows(far, {panini_x(1.5, 4.0) / panini_x(75 * degree, 4.0), 0}, {std::sin(1.5), 0, -std::cos(1.5)});
+  CHECK_FALSE(image_point(far, {std::sin(limit + 0.01), 0, -std::cos(limit + 0.01)}));
+  CHECK(image_point(far, {std::sin(limit - 0.01), 0, -std::cos(limit - 0.01)}));
+  CHECK_FALSE(ray(far, {panini_x(limit, 4.0) / panini_x(75 * degree, 4.0) + 1e-3, 0}));
+  CHECK(matched_density(map, {1000, 500}) ==
+        doctest::Approx(1000 / 4.0 * 1.25)); // 1 + tan² of half the angle
+  CHECK(matched_density(map_of(model::Panini{{90}, {}, 0.0}, 2.0), {1000, 500}) ==
+        doctest::Approx(500 * 1.25)); // 1 / cos² where the tangent is 1/2
+}
+
+TEST_CASE("cube cross: six faces that meet, nothing beside them") {
+  const Map map = map_of(model::CubeCross{}, 4.0 / 3);
+  const double third = 1.0 / 3;
+  check_shows(map, {-0.25, 0}, {0, 0, -1});
+  check_shows(map, {0.25, 0}, {1, 0, 0});
+  check_shows(map, {0.75, 0}, {0, 0, 1});
+  check_shows(map, {-0.75, 0}, {-1, 0, 0});
+  check_shows(map, {-0.25, 2 * third}, {0, 1, 0});
+  check_shows(map, {-0.25, -2 * third}, {0, -1, 0});
+  check_shows(map, {-0.25, third + 0.01}, {0, 1, -0.97}); // above front's top: the top near the front
+  check_shows(map, {0.25, 0.2}, {1, 0.6, 0});
+  check_shows(map, {-0.375, 2 * third}, {-0.5, 1, 0}); // left of the top is left
+  check_shows(map, {-0.25, -1 + 0.01}, {0, -1, 0.97});
+  for (const glm::dvec2 beside : {glm::dvec2(0.25, 0.5), {-0.75, 0.5}, {0.75, -0.5}, {-0.6, -0.9}}) {
+    CHECK_FALSE(ray(map, beside));
+    CHECK(pixel_density(map, beside, {400, 300}) == 0.0);
+  }
+  CHECK_FALSE(ray(map_of(model::CubeCross{}, 4.0 / 3, 0, 0.5), {0.51, 0})); // zoomed out
+  check_shows(map_of(model::CubeCross{}, 4.0 / 3, 0, 1.0, {0.5, 0, 0}), {0.25, 0}, {0.5, 0, 0});
+  CHECK(pixel_density(map, {-0.25, 0}, {400, 300}) == doctest::Approx(50).epsilon(1e-5));
+  CHECK(matched_density(map, {400, 300}) == doctest::Approx(50));
+}
+
+TEST_CASE("cube cross: the map breaks between faces, and each goes on over its neighbours") {
+  const Map map = map_of(model::CubeCross{}, 4.0 / 3);
+  CHECK(breaks(map).s == std::vector<double>{-0.5, 0.0, 0.5});
+  CHECK(breaks(map).t == std::vector<double>{-1.0 / 3, 1.0 / 3});
+  CHECK(breaks(map_of(model::CubeCross{}, 4.0 / 3, 0, 2.0)).s == std::vector<double>{0.0});
+  CHECK(breaks(map_of(model::Fisheye{}, 1.0)).s.empty());
+  const auto front = beyond(map, {0.25, 0}, {-0.25, 0}), right = beyond(map, {0.25, 0}, {0.25, 0});
+  REQUIRE(front);
+  REQUIRE(right);
+  CHECK(glm::length(*front - glm::dvec3(2, 0, -1)) < 1e-12);
+  CHECK(glm::length(*right - glm::dvec3(1, 0, 0)) < 1e-12);
+  const glm::dvec2 border(0.0, 0.1); // both faces show it alike
+  CHECK(glm::length(*beyond(map, border, {-0.25, 0}) - *beyond(map, border, {0.25, 0})) < 1e-12);
+  CHECK_FALSE(beyond(map, {0, 0}, {0.75, 0.75}));
 }
 
 TEST_CASE("pixel density: hand-worked values") {

@@ -3,7 +3,8 @@
 // Tolerances come from float: 2^-24 = 6e-8 relative per operation. An azimuth up to π is rounded to 2e-7 and
 // its sine and cosine add as much again, so a direction before the off-axis vector is good to about 1e-6
 // radians; an eye at distance 1 - g from the wall magnifies that by 1 / g. At 16384 pixels for a full turn a
-// pixel is 4e-4.
+// pixel is 4e-4. An orthographic picture and Panini's from afar end where directions crowd without limit:
+// there a rounding in the image is a larger angle.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +28,9 @@ using namespace cupola::projection;
 
 namespace {
 
-const std::array<std::string, 4> names{"perspective", "cylinder", "fisheye", "equirectangular"};
+const std::array<std::string, 9> names{"perspective",     "cylinder",      "fisheye",
+                                       "equirectangular", "stereographic", "orthographic",
+                                       "mercator",        "panini",        "cube_cross"};
 
 constexpr const char* mains[] = {R"(
 layout(local_size_x = 64) in;
@@ -59,6 +62,11 @@ struct Tolerance {
   double gap, rays, points;
 };
 constexpr std::array tolerances{Tolerance{1.0, 1.5e-6, 1e-5}, Tolerance{0.05, 1e-5, 1e-4}};
+
+/// Times as much where directions crowd towards the end of a shape.
+double crowding(std::size_t shape) {
+  return names[shape] == "orthographic" || names[shape] == "panini" ? 50.0 : 1.0;
+}
 
 /// A headless context with map.glsl compiled into two compute programs.
 class Gpu {
@@ -132,6 +140,14 @@ Map random_map(std::size_t shape, std::mt19937& random, double gap) {
   if (shape == 1) p.shape = model::Cylinder{{number(1, 360)}, {number(0.1, 170)}};
   if (shape == 2) p.shape = model::Fisheye{{number(1, 360)}};
   if (shape == 3) p.shape = model::Equirectangular{{number(1, 360)}, {number(1, 180)}};
+  if (shape == 4) p.shape = model::Stereographic{{number(1, 350)}};
+  if (shape == 5) p.shape = model::Orthographic{{number(1, 180)}};
+  if (shape == 6) p.shape = model::Mercator{{number(1, 360)}, {number(1, 178)}};
+  if (shape == 7) {
+    const double distance = random() % 2 ? number(0, 1) : std::exp(number(0, 3));
+    p.shape = model::Panini{{number(0.1, panini_limit(distance) * 360 / 3.1416 - 1)}, {}, distance};
+  }
+  if (shape == 8) p.shape = model::CubeCross{};
   p.zoom = std::exp(number(std::log(0.05), std::log(100.0)));
   if (gap < 1.0) {
     do p.off_axis = {number(-1, 1), number(-1, 1), number(-1, 1)};
@@ -198,7 +214,7 @@ TEST_CASE("rays: directions of both twins") {
       }
       MESSAGE(names[shape], ", eye at least ", gap, " from the wall: largest difference ", worst,
               " rad over ", shown, " rays");
-      CHECK(worst < ray_tolerance);
+      CHECK(worst < ray_tolerance * crowding(shape));
       CHECK(shown > 20'000);
     }
   }
@@ -235,7 +251,7 @@ TEST_CASE("points: image coordinates of both twins show the same direction") {
       }
       MESSAGE(names[shape], ", eye at least ", gap, " from the wall: largest difference ", worst,
               " rad over ", compared, " directions, ", contrary, " at a limit");
-      CHECK(worst < point_tolerance);
+      CHECK(worst < point_tolerance * crowding(shape));
       CHECK(contrary <= 20);
       CHECK(compared > 5'000);
     }
