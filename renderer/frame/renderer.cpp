@@ -65,6 +65,14 @@ model::Result<FixedPrograms> build_fixed() {
 
 } // namespace
 
+/// What the CPU engine keeps of a viewport with triangular pieces.
+struct Cells {
+  std::shared_ptr<const plan::Plan> plan; ///< owns `set`
+  const plan::PieceSet* set = nullptr;
+  std::optional<passes::PieceTable> table;
+  passes::Occlusion occlusion;
+};
+
 struct Renderer::Impl {
   RendererOptions options;
   Device device = query_device();
@@ -72,6 +80,7 @@ struct Renderer::Impl {
   passes::ScenePrograms programs;
   passes::ScenePass pass{programs};
   std::map<std::string, passes::GpuStrips> gpu_strips; ///< by output/viewport: each keeps its own list
+  std::map<std::string, Cells> cells;                  ///< by output/viewport
   std::map<std::string, ReferenceView> references;
   gl::VertexArray empty_array = gl::VertexArray::make();
   gl::Buffer frame_block = gl::Buffer::make();
@@ -245,6 +254,13 @@ passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const pla
     return counts;
   }
   const model::Pieces& settings = current->stage->show->pieces;
+  if (!set.strips) {
+    Cells& own = cells[key];
+    if (own.set != &set || own.plan != current->stage->plan)
+      own = {current->stage->plan, &set, passes::PieceTable(set), {}};
+    return pass.draw_cells_cpu(scene, *own.table, own.occlusion,
+                               static_cast<std::uint64_t>(settings.max_replicated), scale);
+  }
   const passes::StripAzimuths azimuths(set, viewport.map.orientation);
   const auto ceiling = static_cast<std::uint64_t>(settings.max_replicated);
   const bool on_gpu = settings.engine == model::Engine::gpu ||

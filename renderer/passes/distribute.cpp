@@ -11,14 +11,6 @@ namespace cupola::passes {
 
 namespace {
 
-std::uint32_t pack_normal(const glm::vec3& normal) {
-  const auto part = [](float x) {
-    const long step = std::lround(std::clamp(x, -1.0f, 1.0f) * 511.0f);
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(step)) & 1023u;
-  };
-  return part(normal.x) | part(normal.y) << 10 | part(normal.z) << 20;
-}
-
 /// A strip as a test and a projection.
 struct Strip {
   glm::mat3 to_screen;   ///< from view space
@@ -174,17 +166,7 @@ constexpr std::uint32_t indices_per_task = 3 * 2048;
 void distribute_strips(const FrameGeometry& geometry, std::span<const DrawItem> items, const StripView& view,
                        std::vector<EmittedBatch>& batches) {
   const std::vector<Strip> strips = strips_of(view.set);
-  std::vector<std::span<const DrawItem>> tasks;
-  std::size_t begin = 0;
-  std::uint32_t indices = 0;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    indices += items[i].index_count;
-    if (indices >= indices_per_task || i + 1 == items.size()) {
-      tasks.push_back(items.subspan(begin, i + 1 - begin));
-      begin = i + 1;
-      indices = 0;
-    }
-  }
+  const std::vector<std::span<const DrawItem>> tasks = split_items(items, indices_per_task);
   batches.resize(tasks.size());
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
     Task task(geometry, view, strips, batches[i]);

@@ -288,6 +288,29 @@ DrawCounts ScenePass::draw_batches(const FrameScene& scene, const std::vector<Em
   return counts;
 }
 
+template <class F>
+DrawCounts ScenePass::draw_distributed(const FrameScene& scene, std::uint64_t max_pairs,
+                                       const StripTarget& target, const F& distribute) {
+  DrawCounts counts;
+  // In portions: memory stays below the ceiling, and nothing is ever missing.
+  const std::uint64_t worst_portion = std::max<std::uint64_t>(max_pairs / 8, 1);
+  for (const auto* items : {&scene.list.opaque, &scene.list.blended}) {
+    std::span<const DrawItem> left(*items);
+    while (!left.empty()) {
+      std::uint64_t triangles = 0;
+      std::size_t take = 0;
+      while (take < left.size() && (take == 0 || triangles < worst_portion))
+        triangles += left[take++].index_count / 3;
+      distribute(left.first(take));
+      counts += draw_batches(scene, batches_, target);
+      left = left.subspan(take);
+    }
+  }
+  set_blending(false);
+  counts.bytes = emitted_vertices_.bytes() + emitted_indices_.bytes();
+  return counts;
+}
+
 DrawCounts ScenePass::draw_strips_cpu(const FrameScene& scene, const plan::PieceSet& set,
                                       const StripAzimuths& azimuths, std::uint64_t max_pairs, int scale) {
   set_front_face(set.pieces.front().to_screen);
@@ -304,24 +327,23 @@ DrawCounts ScenePass::draw_strips_cpu(const FrameScene& scene, const plan::Piece
                        scene.near,
                        target.group_size,
                        scene.style == model::StyleKind::wireframe};
-  DrawCounts counts;
-  // In portions: memory stays below the ceiling, and nothing is ever missing.
-  const std::uint64_t worst_portion = std::max<std::uint64_t>(max_pairs / 8, 1);
-  for (const auto* items : {&scene.list.opaque, &scene.list.blended}) {
-    std::span<const DrawItem> left(*items);
-    while (!left.empty()) {
-      std::uint64_t triangles = 0;
-      std::size_t take = 0;
-      while (take < left.size() && (take == 0 || triangles < worst_portion))
-        triangles += left[take++].index_count / 3;
-      distribute_strips(scene.geometry, left.first(take), view, batches_);
-      counts += draw_batches(scene, batches_, target);
-      left = left.subspan(take);
-    }
-  }
-  set_blending(false);
-  counts.bytes = emitted_vertices_.bytes() + emitted_indices_.bytes();
-  return counts;
+  return draw_distributed(scene, max_pairs, target, [&](std::span<const DrawItem> items) {
+    distribute_strips(scene.geometry, items, view, batches_);
+  });
+}
+
+DrawCounts ScenePass::draw_cells_cpu(const FrameScene& scene, const PieceTable& pieces, Occlusion& occlusion,
+                                     std::uint64_t max_pairs, int scale) {
+  glFrontFace(GL_CCW);
+  std::array<GLint, 4> scissor{};
+  glGetIntegerv(GL_SCISSOR_BOX, scissor.data());
+  const StripTarget target{scale, 1, {scissor.begin(), scissor.end()}};
+  const CellView view{pieces, scene.eye, scene.view_from_world, scene.near,
+                      scene.style == model::StyleKind::wireframe};
+  occlusion.reset(pieces.pieces().size());
+  return draw_distributed(scene, max_pairs, target, [&](std::span<const DrawItem> items) {
+    distribute_cells(scene.geometry, items, view, occlusion, batches_);
+  });
 }
 
 } // namespace cupola::passes

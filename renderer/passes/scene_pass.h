@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderer/gl/handle.h"
+#include "renderer/passes/cells.h"
 #include "renderer/passes/distribute.h"
 #include "renderer/passes/draw_list.h"
 #include "renderer/passes/gpu_scene.h"
@@ -82,6 +83,11 @@ public:
   DrawCounts draw_strips_cpu(const FrameScene& scene, const plan::PieceSet& set,
                              const StripAzimuths& azimuths, std::uint64_t max_pairs, int scale);
 
+  /// Triangular pieces by the CPU engine, into the current GL viewport and scissor. `occlusion` is the
+  /// viewport's own.
+  DrawCounts draw_cells_cpu(const FrameScene& scene, const PieceTable& pieces, Occlusion& occlusion,
+                            std::uint64_t max_pairs, int scale);
+
   void bind_program(const FrameScene& scene, VertexPath path, std::uint32_t material, float style_scale,
                     std::span<const glm::mat3> to_screen, std::span<const int> layers);
 
@@ -97,6 +103,10 @@ private:
   };
   DrawCounts draw_batches(const FrameScene& scene, const std::vector<EmittedBatch>& batches,
                           const StripTarget& target);
+  /// Calls distribute(items) and draws what it leaves in `batches_`, portion by portion.
+  template <class F>
+  DrawCounts draw_distributed(const FrameScene& scene, std::uint64_t max_pairs, const StripTarget& target,
+                              const F& distribute);
   /// Copies the vertices of all batches; where each batch's first one is.
   std::vector<std::size_t> upload_vertices(const std::vector<EmittedBatch>& batches);
 

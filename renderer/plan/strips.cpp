@@ -175,11 +175,11 @@ std::vector<int> greedy_borders(const Wall& wall, double max_error) {
 constexpr int block = 16;
 
 /// Strips of equal width, up to a block where they are at least as wide as one, else up to a pixel.
-/// `widest`: what the error allows, the same everywhere.
-std::vector<int> equal_borders(const Wall& wall, const PixelRect& rect, int widest) {
-  const int unit = widest >= block && rect.x % block == 0 && wall.first() == 0 ? block : 1;
+/// `allowed`: what the error allows, the same everywhere.
+std::vector<int> equal_borders(const Wall& wall, const PixelRect& rect, int allowed) {
+  const int unit = allowed >= block && rect.x % block == 0 && wall.first() == 0 ? block : 1;
   const int columns = wall.end() - wall.first();
-  const int width = widest / unit * unit;
+  const int width = allowed / unit * unit;
   const int count = (columns + width - 1) / width;
   std::vector<int> borders;
   for (int i = 0; i < count; ++i) {

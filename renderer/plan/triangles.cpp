@@ -5,6 +5,7 @@
 #include <glm/matrix.hpp>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "renderer/plan/plan.h"
 
@@ -116,9 +117,13 @@ void finish_triangles(PieceSet& set, const PixelRect& rect) {
   shown.reserve(grouping.order.size());
   set.pieces.reserve(grouping.order.size());
   for (const std::uint32_t i : grouping.order) {
-    triangles.push_back(set.triangles[i]);
+    std::array<std::uint32_t, 3> triangle = set.triangles[i];
+    const glm::dvec2 a = set.corners[triangle[0]].screen, b = set.corners[triangle[1]].screen - a,
+                     c = set.corners[triangle[2]].screen - a;
+    if (b.x * c.y < b.y * c.x) std::swap(triangle[1], triangle[2]);
+    triangles.push_back(triangle);
     shown.push_back(set.shown[i]);
-    set.pieces.push_back(piece_of(set, set.triangles[i], rect));
+    set.pieces.push_back(piece_of(set, triangle, rect));
   }
   set.triangles = std::move(triangles);
   set.shown = std::move(shown);

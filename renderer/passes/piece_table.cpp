@@ -1,0 +1,49 @@
+#include "renderer/passes/piece_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+namespace cupola::passes {
+
+namespace {
+
+constexpr double margin = 1e-6; ///< radians by which cones are wider than their rays: rounding to floats
+
+} // namespace
+
+PieceTable::PieceTable(const plan::PieceSet& set) {
+  groups_.reserve(set.groups.size());
+  for (const plan::PieceGroup& group : set.groups) {
+    const double angle = std::acos(std::clamp(group.cosine, -1.0, 1.0)) + margin;
+    groups_.push_back({glm::vec3(group.axis), static_cast<float>(std::sin(angle)),
+                       group.cosine <= -1.0 ? -1.0f : static_cast<float>(std::cos(angle)), group.first,
+                       group.count, group.next});
+  }
+  corners_.reserve(set.corners.size());
+  for (const plan::Corner& corner : set.corners)
+    corners_.push_back({glm::vec3(corner.ray), glm::vec3(corner.weight * glm::dvec3(corner.screen, 1.0))});
+  pieces_.reserve(set.pieces.size());
+  for (std::size_t i = 0; i < set.pieces.size(); ++i) {
+    const plan::Piece& piece = set.pieces[i];
+    pieces_.push_back({{glm::vec3(piece.planes[0]), glm::vec3(piece.planes[1]), glm::vec3(piece.planes[2])},
+                       set.triangles[i],
+                       glm::determinant(piece.to_screen) > 0.0});
+  }
+}
+
+bool PieceTable::meets(const Group& group, const glm::vec3& center, float radius) {
+  if (group.cosine <= -1.0f) return true;
+  const float along = glm::dot(group.axis, center);
+  const float square = glm::dot(center, center);
+  if (square <= radius * radius) return true;
+  // The sphere fills a cone of half angle β with sin β = radius / distance. They meet where the angle between
+  // the axes is at most α + β.
+  const float distance = std::sqrt(square);
+  const float sine = radius / distance, cosine = std::sqrt(std::max(0.0f, 1.0f - sine * sine));
+  if (sine * group.cosine + cosine * group.sine < 0.0f) return true; // α + β beyond half a turn
+  return along >= distance * (group.cosine * cosine - group.sine * sine) - 1e-6f * distance;
+}
+
+} // namespace cupola::passes
