@@ -14,6 +14,7 @@
 #include "renderer/passes/cubemap_pass.h"
 #include "renderer/passes/frame_block.h"
 #include "renderer/passes/gpu_strips.h"
+#include "renderer/passes/piece_area.h"
 #include "renderer/passes/scene_pass.h"
 #include "renderer/plan/camera.h"
 
@@ -46,6 +47,7 @@ Device query_device() {
 /// The programs that do not depend on the scene.
 struct FixedPrograms {
   gl::Program lookup, downsample, picture;
+  passes::PieceArea::Programs area;
 };
 
 model::Result<FixedPrograms> build_fixed() {
@@ -56,20 +58,23 @@ model::Result<FixedPrograms> build_fixed() {
       {"downsample", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/downsample.frag.glsl"}}, {}});
   auto picture = gl::build_program(
       {"picture", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/picture.frag.glsl"}}, {}});
+  auto area = passes::PieceArea::make_programs();
   model::Problems problems;
   for (const auto* result : {&lookup, &downsample, &picture})
     if (!*result) problems.insert(problems.end(), result->error().begin(), result->error().end());
+  if (!area) problems.insert(problems.end(), area.error().begin(), area.error().end());
   if (!problems.empty()) return tl::unexpected(problems);
-  return FixedPrograms{std::move(*lookup), std::move(*downsample), std::move(*picture)};
+  return FixedPrograms{std::move(*lookup), std::move(*downsample), std::move(*picture), std::move(*area)};
 }
 
 } // namespace
 
-/// What the CPU engine keeps of a viewport with triangular pieces.
+/// What is kept of a viewport with triangular pieces as long as they stay.
 struct Cells {
   std::shared_ptr<const plan::Plan> plan; ///< owns `set`
   const plan::PieceSet* set = nullptr;
   std::optional<passes::PieceTable> table;
+  std::optional<passes::PieceArea> area;
   passes::Occlusion occlusion;
 };
 
@@ -98,6 +103,7 @@ struct Renderer::Impl {
   passes::FrameScene pose_scene(const plan::CameraPose& camera, double time);
   passes::DrawCounts draw_output(const plan::OutputPlan& output, const passes::FrameScene& scene,
                                  const plan::CameraPose& camera, double time);
+  Cells& cells_of(const std::string& key, const plan::PieceSet& set);
   passes::DrawCounts draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
                                  const passes::FrameScene& scene, int scale);
   void draw_reference(const std::string& key, const plan::ViewportPlan& viewport,
@@ -244,6 +250,17 @@ passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, do
           !lights.empty()};
 }
 
+Cells& Renderer::Impl::cells_of(const std::string& key, const plan::PieceSet& set) {
+  Cells& own = cells[key];
+  if (own.set != &set || own.plan != current->stage->plan) {
+    own.plan = current->stage->plan;
+    own.set = &set;
+    own.table.emplace(set);
+    own.area.emplace(set);
+  }
+  return own;
+}
+
 passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
                                                const passes::FrameScene& scene, int scale) {
   const plan::PieceSet& set = *viewport.pieces;
@@ -255,9 +272,9 @@ passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const pla
   }
   const model::Pieces& settings = current->stage->show->pieces;
   if (!set.strips) {
-    Cells& own = cells[key];
-    if (own.set != &set || own.plan != current->stage->plan)
-      own = {current->stage->plan, &set, passes::PieceTable(set), {}};
+    Cells& own = cells_of(key, set);
+    own.area->prepare(fixed.area, viewport.map, glm::vec3(current->stage->show->background),
+                      current->cubemap.get());
     return pass.draw_cells_cpu(scene, *own.table, own.occlusion,
                                static_cast<std::uint64_t>(settings.max_replicated), scale);
   }
@@ -319,9 +336,11 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
     switch (viewport.method) {
     case model::Method::piecewise:
       passes::set_scene_state();
-      glClearColor(background.r, background.g, background.b, 1.0f);
-      glClearDepth(0.0);
-      glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+      if (viewport.pieces->strips) {
+        glClearColor(background.r, background.g, background.b, 1.0f);
+        glClearDepth(0.0);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+      }
       counts += draw_pieces(key, viewport, scene, scale);
       break;
     case model::Method::cubemap:

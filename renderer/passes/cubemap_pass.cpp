@@ -71,19 +71,23 @@ DrawCounts draw_cubemap(ScenePass& pass, const FrameScene& scene, const plan::Cu
   return counts;
 }
 
-void draw_lookup(GLuint program, GLuint empty_array, const projection::Map& map,
-                 const CubemapTarget& cubemap) {
+void set_map(const projection::Map& map) {
   using projection::MapUniforms;
   const MapUniforms values = projection::uniforms(map);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_BLEND);
-  glUseProgram(program);
   glUniform1i(MapUniforms::location_shape, values.shape);
   glUniform4fv(MapUniforms::location_parameters, 1, glm::value_ptr(values.parameters));
   glUniform1f(MapUniforms::location_zoom, values.zoom);
   glUniform3fv(MapUniforms::location_off_axis, 1, glm::value_ptr(values.off_axis));
   glUniformMatrix3fv(MapUniforms::location_orientation, 1, GL_FALSE, glm::value_ptr(values.orientation));
+}
+
+void draw_lookup(GLuint program, GLuint empty_array, const projection::Map& map,
+                 const CubemapTarget& cubemap) {
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_BLEND);
+  glUseProgram(program);
+  set_map(map);
   glBindTextureUnit(0, cubemap.texture());
   glBindSampler(0, 0);
   glBindVertexArray(empty_array);

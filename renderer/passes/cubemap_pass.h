@@ -21,6 +21,9 @@ namespace cupola::passes {
 DrawCounts draw_cubemap(ScenePass& pass, const FrameScene& scene, const plan::CubemapPlan& plan,
                         const CubemapTarget& target, const glm::vec3& background, float style_scale);
 
+/// Sets the uniforms of map.glsl in the program in use.
+void set_map(const projection::Map& map);
+
 /// Looks every pixel of the current GL viewport up. `program`: fullscreen.vert + lookup.frag. Pixels that the
 /// projection does not show stay as they are.
 void draw_lookup(GLuint program, GLuint empty_array, const projection::Map& map,

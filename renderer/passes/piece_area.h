@@ -1,0 +1,45 @@
+// What lies around the scene in a viewport of triangular pieces: pixels that its projection does not show
+// keep what they had, those of the other pieces get the background, and where no piece is fit to draw the
+// cubemap is looked up. Render thread only.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "configs/model/problem.h"
+#include "renderer/gl/handle.h"
+#include "renderer/passes/targets.h"
+#include "renderer/plan/plan.h"
+
+namespace cupola::passes {
+
+class PieceArea {
+public:
+  struct Programs {
+    gl::Program unshown, flat, lookup;
+  };
+  [[nodiscard]] static model::Result<Programs> make_programs();
+
+  explicit PieceArea(const plan::PieceSet& set);
+
+  /// Clears the current GL viewport and scissor for the scene: depth, and the background's colour where
+  /// something is shown. Afterwards the scene is drawn with reversed depth, and hides nothing that is looked
+  /// up. `cubemap`: where set.looked_up is not empty.
+  void prepare(const Programs& programs, const projection::Map& map, const glm::vec3& background,
+               const CubemapTarget* cubemap) const;
+
+private:
+  struct Part {
+    GLint first = 0;
+    GLsizei count = 0; ///< corners
+  };
+  void draw(const Part& part) const;
+
+  bool fills_;
+  Part all_, rim_, looked_up_;
+  gl::Buffer corners_;
+  gl::VertexArray array_;
+};
+
+} // namespace cupola::passes
