@@ -145,6 +145,9 @@ struct Planned {
 /// directions of the pieces.
 void finish_triangles(PieceSet& set, const PixelRect& rect);
 
+/// Pieces at which make_cells stops to refine.
+inline constexpr std::size_t max_cells = 250'000;
+
 inline constexpr int min_cubemap_size = 16, max_cubemap_size = 8192; ///< that "auto" may choose
 
 /// Edge of a face whose texels match the pixels of the viewport (projection::matched_density), a multiple of

@@ -13,13 +13,14 @@ constexpr double rim = 1.0 + 1e-12; // a point that was computed to lie on the r
 } // namespace
 
 std::optional<glm::dvec3> fisheye_ray(const FisheyeMap& map, glm::dvec2 st, double zoom) {
-  if (!(std::hypot(st.x * map.scale_s, st.y * map.scale_t) <= rim)) return std::nullopt;
+  const double x = st.x * map.scale_s, y = st.y * map.scale_t;
+  if (!(x * x + y * y <= rim)) return std::nullopt;
   return fisheye_beyond(map, st, zoom);
 }
 
 std::optional<glm::dvec3> fisheye_beyond(const FisheyeMap& map, glm::dvec2 st, double zoom) {
   const double x = st.x * map.scale_s, y = st.y * map.scale_t;
-  const double radius = std::hypot(x, y);
+  const double radius = std::sqrt(x * x + y * y);
   const double angle = radius / zoom * map.half_fov;
   if (!(angle <= std::numbers::pi * rim)) return std::nullopt;
   if (radius == 0.0) return glm::dvec3(0.0, 0.0, -1.0);
