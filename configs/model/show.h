@@ -193,7 +193,7 @@ struct Projection {
 
 // ---- outputs --------------------------------------------------------------------------------------
 
-enum class Method : std::uint8_t { piecewise, cubemap, reference };
+enum class Method : std::uint8_t { piecewise, cubemap, reference, automatic };
 
 /// A rectangle of an output. x, y, width, height are fractions of the output; (0,0) is its top left corner.
 struct Viewport {

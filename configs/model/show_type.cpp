@@ -11,7 +11,7 @@ struct Words<StyleKind> {
 };
 template <>
 struct Words<Method> {
-  static constexpr std::array all{"piecewise", "cubemap", "reference"};
+  static constexpr std::array all{"piecewise", "cubemap", "reference", "auto"};
 };
 template <>
 struct Words<Engine> {
@@ -266,7 +266,8 @@ const Type& viewport_type() {
                                .choice("method", &Viewport::method, Cost::rebuild,
                                        "piecewise: rasterised straight into perspective pieces. cubemap: six "
                                        "faces, then a lookup per pixel. "
-                                       "reference: rays on the CPU, slow and right.")
+                                       "reference: rays on the CPU, slow and right. "
+                                       "auto: tries piecewise and cubemap, and stays with the quicker one.")
                                .number("x", &Viewport::x, Unit::fraction, Range{0, 1}, Cost::rebuild,
                                        "Left edge, as a fraction of the output.")
                                .number("y", &Viewport::y, Unit::fraction, Range{0, 1}, Cost::rebuild,

@@ -69,7 +69,7 @@ void make_cubemap_target(Realised& made, const Realised* before) {
   int matched = 1;
   for (const plan::OutputPlan& output : plan.outputs)
     for (const plan::ViewportPlan& viewport : output.viewports)
-      if (viewport.method == model::Method::cubemap)
+      if (plan::may_use_cubemap(viewport))
         matched = std::max(matched, plan::matched_cubemap_size(viewport.map, viewport.rect));
   made.cubemap_style_scale = static_cast<float>(plan.cubemap->size) / static_cast<float>(matched);
   if (before && before->cubemap && before->cubemap->size() == plan.cubemap->size &&

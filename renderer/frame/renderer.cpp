@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <glm/matrix.hpp>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <set>
 
+#include "renderer/frame/method_choice.h"
 #include "renderer/frame/realised.h"
 #include "renderer/frame/reference_view.h"
 #include "renderer/gl/shader.h"
@@ -90,6 +92,7 @@ struct Renderer::Impl {
   gl::VertexArray empty_array = gl::VertexArray::make();
   gl::Buffer frame_block = gl::Buffer::make();
   std::optional<Realised> current, next;
+  MethodChoice choice; ///< for the viewports with method auto
   std::shared_ptr<const Stage> waiting;
   model::Problems problems;
   std::vector<Picture> pictures;
@@ -98,6 +101,9 @@ struct Renderer::Impl {
 
   void take_waiting();
   void upload(double time);
+  [[nodiscard]] model::Method method_of(const plan::ViewportPlan& viewport) const;
+  [[nodiscard]] bool trying() const;
+  [[nodiscard]] bool wants_cubemap() const;
   bool references_answer(double time);
   void drop_references();
   passes::FrameScene pose_scene(const plan::CameraPose& camera, double time);
@@ -198,6 +204,48 @@ void Renderer::Impl::drop_references() {
     it = !used.contains(it->first) && it->second.forget() ? references.erase(it) : std::next(it);
 }
 
+namespace {
+
+/// Both stages ask for about the same work: a measured choice of the method holds for both.
+bool same_work(const Stage& a, const Stage& b) {
+  const auto shapes = [](const model::Show& show) {
+    std::vector<std::size_t> indices;
+    for (const auto& [name, projection] : show.projections) indices.push_back(projection.shape.index());
+    return indices;
+  };
+  return a.scene == b.scene && a.show->quality == b.show->quality && a.show->outputs == b.show->outputs &&
+         a.show->scene.style.kind == b.show->scene.style.kind && shapes(*a.show) == shapes(*b.show);
+}
+
+bool any_viewport(const plan::Plan& plan, const auto& is) {
+  for (const plan::OutputPlan& output : plan.outputs)
+    if (std::any_of(output.viewports.begin(), output.viewports.end(), is)) return true;
+  return false;
+}
+
+} // namespace
+
+/// How a viewport is drawn in this frame.
+model::Method Renderer::Impl::method_of(const plan::ViewportPlan& viewport) const {
+  if (viewport.method != model::Method::automatic) return viewport.method;
+  if (!viewport.pieces) return model::Method::cubemap;
+  return options.offline && !options.measure_methods ? model::Method::piecewise : choice.method();
+}
+
+bool Renderer::Impl::trying() const {
+  return choice.trying() && (!options.offline || options.measure_methods) &&
+         any_viewport(*current->stage->plan, [](const plan::ViewportPlan& viewport) {
+           return viewport.method == model::Method::automatic && viewport.pieces;
+         });
+}
+
+bool Renderer::Impl::wants_cubemap() const {
+  return current->cubemap && any_viewport(*current->stage->plan, [this](const plan::ViewportPlan& viewport) {
+           return method_of(viewport) == model::Method::cubemap ||
+                  (viewport.pieces && !viewport.pieces->looked_up.empty());
+         });
+}
+
 void Renderer::Impl::upload(double time) {
   if (!next) return;
   if (!next->scene_ready) {
@@ -211,6 +259,7 @@ void Renderer::Impl::upload(double time) {
   if (!next->scene_ready) return;
   // At the start there is nothing better to show meanwhile; off-line, drawing waits.
   if (current && !options.offline && !references_answer(time)) return;
+  if (current && !same_work(*current->stage, *next->stage)) choice.restart();
   current = std::move(*next);
   next.reset();
 }
@@ -333,7 +382,7 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
     glViewport(rect[0], rect[1], rect[2], rect[3]);
     glScissor(rect[0], rect[1], rect[2], rect[3]);
     glEnable(GL_SCISSOR_TEST);
-    switch (viewport.method) {
+    switch (method_of(viewport)) {
     case model::Method::piecewise:
       passes::set_scene_state();
       if (viewport.pieces->strips) {
@@ -346,6 +395,7 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
     case model::Method::cubemap:
       passes::draw_lookup(fixed.lookup.id(), empty_array.id(), viewport.map, *current->cubemap);
       break;
+    case model::Method::automatic: // has been resolved
     case model::Method::reference:
       draw_reference(key, viewport, camera, time);
       break;
@@ -367,15 +417,23 @@ FrameStatistics Renderer::draw(double time) {
   const model::Show& show = *current.stage->show;
   const plan::CameraPose camera = plan::camera_at(show.camera, time);
 
+  const bool trying = impl_->trying();
+  if (trying) glFinish();
+  const auto start = std::chrono::steady_clock::now();
   passes::set_scene_state();
   const passes::FrameScene scene = impl_->pose_scene(camera, time);
   passes::DrawCounts counts;
-  if (current.cubemap)
+  if (impl_->wants_cubemap())
     counts += passes::draw_cubemap(impl_->pass, scene, *current.stage->plan->cubemap, *current.cubemap,
                                    glm::vec3(show.background), current.cubemap_style_scale);
   impl_->pictures.clear();
   for (const plan::OutputPlan& output : current.stage->plan->outputs)
     counts += impl_->draw_output(output, scene, camera, time);
+  if (trying) {
+    glFinish();
+    impl_->choice.record(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  }
   model::Problems shader_problems = impl_->programs.take_problems();
   impl_->problems.insert(impl_->problems.end(), shader_problems.begin(), shader_problems.end());
 

@@ -39,10 +39,14 @@ struct FrameStatistics {
   bool uploading = false;         ///< a newer stage is being realised beside this one
 };
 
+/// Frames after which a trial of the method `auto` is over.
+inline constexpr int method_trial_frames = 6;
+
 struct RendererOptions {
   bool offline =
       false; ///< every draw is complete: waits for uploads and for pictures of the reference method
-  int reference_samples = 0; ///< rays a pixel of the reference method; 0: as the show's quality says
+  bool measure_methods = false; ///< off-line too `auto` tries both methods; else it is piecewise there
+  int reference_samples = 0;    ///< rays a pixel of the reference method; 0: as the show's quality says
   std::function<void(double share)> progress; ///< of a reference picture while off-line; any thread
 };
 

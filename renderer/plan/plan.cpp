@@ -120,7 +120,8 @@ private:
     if (!check_size(pointer, made.rect)) return std::nullopt;
     made.map = projection::make_map(named->second, double(made.rect.width) / made.rect.height);
     if (!projection::inside(made.map)) return std::nullopt; // reported with the projection
-    if (made.method == model::Method::piecewise) add_pieces(pointer, named->second.shape, made);
+    if (made.method == model::Method::piecewise || made.method == model::Method::automatic)
+      add_pieces(pointer, named->second.shape, made);
     return made;
   }
 
@@ -145,6 +146,7 @@ private:
   void add_pieces(const std::string& pointer, const model::Shape& shape, ViewportPlan& viewport) {
     if (!std::holds_alternative<model::Cylinder>(shape) &&
         !std::holds_alternative<model::Perspective>(shape)) {
+      if (viewport.method == model::Method::automatic) return; // the cubemap it is
       report(Code::pieces_unsupported, pointer + "/method", "'cubemap' or 'reference' for this projection",
              fmt::format("'piecewise' with kind '{}'", kind(shape)), "Use the method 'cubemap'.");
       return;
@@ -170,7 +172,7 @@ private:
   void each_cubemap_viewport(F f) const {
     for (const OutputPlan& output : plan_.outputs)
       for (const ViewportPlan& viewport : output.viewports)
-        if (viewport.method == model::Method::cubemap) f(viewport);
+        if (may_use_cubemap(viewport)) f(viewport);
   }
 
   /// One cubemap for all: the finest size, and all that any of them sees.

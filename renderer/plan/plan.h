@@ -100,8 +100,14 @@ struct ViewportPlan {
   PixelRect rect; ///< in output pixels, before supersampling
   projection::Map map;
   model::Method method{};
-  std::optional<PieceSet> pieces; ///< method piecewise
+  std::optional<PieceSet> pieces; ///< methods piecewise and automatic (there only where it can)
 };
+
+/// The cubemap has to hold what this viewport shows.
+[[nodiscard]] inline bool may_use_cubemap(const ViewportPlan& viewport) {
+  return viewport.method == model::Method::cubemap || viewport.method == model::Method::automatic ||
+         (viewport.pieces && !viewport.pieces->looked_up.empty());
+}
 
 struct OutputPlan {
   std::string name;

@@ -74,6 +74,10 @@ void add_bench(CLI::App& app, ExitCode& exit_code) {
   table1->add_flag("--json", options->json, "One JSON object on standard output");
   table1->add_flag("--quick", options->quick, "Few frames, to see that it works; the figures mean little");
   table1->callback([options, &exit_code] { exit_code = bench_table1(options->json, options->quick); });
+  CLI::App* fisheye = bench->add_subcommand("fisheye", "Fisheye of 180°: pieces against the cubemap.");
+  fisheye->add_flag("--json", options->json, "One JSON object on standard output");
+  fisheye->add_flag("--quick", options->quick, "Few frames, to see that it works; the figures mean little");
+  fisheye->callback([options, &exit_code] { exit_code = bench_fisheye(options->json, options->quick); });
 }
 
 } // namespace cupola::cli

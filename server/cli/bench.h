@@ -19,5 +19,6 @@ void print_report(const BenchReport& report, bool as_json);
 /// Table 1 of Lorenz & Döllner (2009): plain perspective, cubemap and piecewise on the 360° cylinder, in one
 /// process. Returns an exit code.
 int bench_table1(bool as_json, bool quick);
+int bench_fisheye(bool as_json, bool quick);
 
 } // namespace cupola::cli

@@ -1,19 +1,14 @@
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <epoxy/gl.h>
-#include <numeric>
 
 #include "server/cli/bench.h"
+#include "server/cli/bench_timing.h"
 #include "server/cli/commands.h"
 #include "server/cli/offline.h"
 
 namespace cupola::cli {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// The paper's scene: a textured city of 35,000 triangles in 14 groups, 1600 × 1200, a path through it.
 model::Show paper_show() {
@@ -60,36 +55,6 @@ constexpr Row rows[] = {
     {"PPP HQ", "cylinder", model::Method::piecewise, true, 54.8, 1.96},
 };
 
-struct Measured {
-  double milliseconds = 0.0; ///< a frame: mean over the path of the median of the repeats
-  double triangles = 0.0, replication = 0.0, buffer_kb = 0.0;
-};
-
-Measured measure(frame::Renderer& renderer, int poses, int repeats) {
-  Measured sum;
-  for (int pose = 0; pose < poses; ++pose) {
-    const double time = 8.0 * pose / poses;
-    std::vector<double> times;
-    frame::FrameStatistics statistics;
-    for (int i = 0; i < repeats + 1; ++i) { // the first of a pose warms caches and is not counted
-      glFinish();
-      const auto start = Clock::now();
-      statistics = renderer.draw(time);
-      glFinish();
-      if (i > 0) times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    }
-    std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
-                     times.end());
-    sum.milliseconds += times[times.size() / 2];
-    sum.triangles += static_cast<double>(statistics.drawn);
-    sum.replication += static_cast<double>(statistics.replicated) / static_cast<double>(statistics.triangles);
-    sum.buffer_kb += static_cast<double>(statistics.vertex_bytes) / 1024.0;
-  }
-  return {sum.milliseconds / poses, sum.triangles / poses, sum.replication / poses, sum.buffer_kb / poses};
-}
-
-double rounded(double value, double step) { return std::round(value / step) * step; }
-
 } // namespace
 
 int bench_table1(bool as_json, bool quick) {
@@ -100,7 +65,7 @@ int bench_table1(bool as_json, bool quick) {
   }
   frame::Renderer& renderer = *offline->renderer;
   BenchReport report;
-  report.device = renderer.device().name + ", OpenGL " + renderer.device().version;
+  report.device = device_line(renderer);
   model::Show show = paper_show();
   std::shared_ptr<const content::Scene> scene;
   std::vector<double> milliseconds;
@@ -122,7 +87,7 @@ int bench_table1(bool as_json, bool quick) {
     const bool slow = row.high_quality && renderer.device().software;
     const int poses = quick ? 2 : (slow ? 3 : 12), repeats = quick || slow ? 1 : 5;
     if (!as_json) std::fprintf(stderr, "%s: %d poses × %d frames\n", row.name, poses, repeats);
-    const Measured measured = measure(renderer, poses, repeats);
+    const Timing measured = time_frames(renderer, 8.0, poses, repeats);
     if (model::Problems failed = renderer.take_problems(); !failed.empty()) {
       print_problems(failed);
       return exit_no;

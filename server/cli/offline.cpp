@@ -14,8 +14,7 @@ void print_problems(const model::Problems& problems) {
     std::fprintf(stderr, "%s\n", model::to_text(problem).c_str());
 }
 
-model::Result<OfflineRenderer> make_offline_renderer(int reference_samples,
-                                                     std::function<void(double)> progress) {
+model::Result<OfflineRenderer> make_offline_renderer(frame::RendererOptions options) {
   OfflineRenderer made;
   const auto report = [](outputs::MessageLevel level, std::string_view words) {
     if (level == outputs::MessageLevel::error)
@@ -25,11 +24,8 @@ model::Result<OfflineRenderer> make_offline_renderer(int reference_samples,
   if (!context) return tl::unexpected(context.error());
   made.context = std::move(*context);
   if (auto current = made.context->make_current(); !current) return tl::unexpected(current.error());
-  frame::RendererOptions options;
   options.offline = true;
-  options.reference_samples = reference_samples;
-  options.progress = std::move(progress);
-  auto renderer = frame::Renderer::make(options);
+  auto renderer = frame::Renderer::make(std::move(options));
   if (!renderer) return tl::unexpected(renderer.error());
   made.renderer = std::move(*renderer);
   return made;

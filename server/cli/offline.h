@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,10 +19,8 @@ struct OfflineRenderer {
   std::unique_ptr<frame::Renderer> renderer;
 };
 
-/// `reference_samples`: rays a pixel, 0 as the show's quality says. `progress`: share of a reference picture
-/// that is done, from any thread.
-[[nodiscard]] model::Result<OfflineRenderer> make_offline_renderer(int reference_samples = 0,
-                                                                   std::function<void(double)> progress = {});
+/// `options`: offline is set.
+[[nodiscard]] model::Result<OfflineRenderer> make_offline_renderer(frame::RendererOptions options = {});
 
 /// Plans the show and loads its scene, or takes `scene` over. `folder`: of relative paths in the show.
 [[nodiscard]] model::Result<std::shared_ptr<const frame::Stage>>

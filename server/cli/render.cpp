@@ -194,7 +194,10 @@ ExitCode run(const Options& options) {
   std::error_code error;
   if (!names_picture)
     std::filesystem::create_directories(target, error); // writing says what is wrong with it
-  auto offline = make_offline_renderer(options.samples > 0 ? options.samples : reference_samples, progress);
+  frame::RendererOptions drawing;
+  drawing.reference_samples = options.samples > 0 ? options.samples : reference_samples;
+  drawing.progress = progress;
+  auto offline = make_offline_renderer(drawing);
   if (!offline) {
     print_problems(offline.error());
     return exit_unusable;

@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "server/cli/bench.h"
+#include "server/cli/bench_timing.h"
+#include "server/cli/commands.h"
+#include "server/cli/offline.h"
+
+namespace cupola::cli {
+
+namespace {
+
+constexpr int places = 5, poses = 2 * places; ///< each level and with the view raised by 20°
+
+/// A dome picture in the middle of the city.
+model::Show dome_show(int size, int triangles) {
+  model::Show show;
+  show.scene.content = model::City{1, triangles};
+  show.camera.loop = true;
+  for (int i = 0; i < poses; ++i) {
+    const double angle = (i % places) * 2.0 * std::numbers::pi / places;
+    model::Keyframe key;
+    key.time = i;
+    key.position = {60.0 * std::sin(angle), 12.0 + 6.0 * std::sin(2.0 * angle), 60.0 * std::cos(angle)};
+    key.orientation.yaw.degrees = std::fmod(angle * 180.0 / std::numbers::pi + 90.0, 360.0);
+    key.orientation.pitch.degrees = i < places ? 0.0 : 20.0;
+    show.camera.path.push_back(key);
+  }
+  model::Projection dome;
+  dome.shape = model::Fisheye{{180.0}};
+  show.projections = {{"dome", dome}};
+  model::Output output;
+  output.sink = model::HeadlessOutput{};
+  output.width = output.height = size;
+  output.viewports["all"] = {"dome", model::Method::piecewise, 0, 0, 1, 1, 0};
+  show.outputs["main"] = output;
+  return show;
+}
+
+struct Way {
+  std::string name;
+  model::Method method;
+  double cubemap_scale; ///< of the matched size; 0: no cubemap is given
+};
+
+const std::array ways{Way{"IB, cubemap 0.79 of matched", model::Method::cubemap, 0.79},
+                      Way{"IB, matched cubemap", model::Method::cubemap, 0.0},
+                      Way{"IB, cubemap 1.57 of matched", model::Method::cubemap, 1.57},
+                      Way{"PPP", model::Method::piecewise, 0.0}, Way{"auto", model::Method::automatic, 0.0}};
+
+class FisheyeBench {
+public:
+  FisheyeBench(frame::Renderer& renderer, bool as_json, bool quick)
+      : renderer_(renderer)
+      , as_json_(as_json)
+      , quick_(quick) {}
+
+  /// False when something could not be drawn; the problems have been printed.
+  bool city(int triangles) {
+    scene_ = nullptr;
+    for (const int size : {2048, 4096}) {
+      std::map<model::Method, double> best;
+      for (const Way& way : ways) {
+        const auto timing = measure(way, size, triangles);
+        if (!timing) return false;
+        if (way.cubemap_scale == 0.0) best[way.method] = timing->milliseconds;
+      }
+      const double pieces = best[model::Method::piecewise], cubemap = best[model::Method::cubemap];
+      const std::string label = std::to_string(triangles / 1000) + "k";
+      const std::string key = size == 2048 ? label : label + "_" + std::to_string(size);
+      report.ratios["ppp_over_ib_" + key] = rounded(cubemap / pieces, 0.001);
+      const double automatic = std::min(pieces, cubemap) / best[model::Method::automatic];
+      report.ratios["auto_over_best_" + key] = rounded(automatic, 0.001);
+      worst_auto_ = std::min(worst_auto_, automatic);
+    }
+    report.ratios["auto_over_best"] = rounded(worst_auto_, 0.001);
+    return true;
+  }
+
+  BenchReport report;
+
+private:
+  std::optional<Timing> measure(const Way& way, int size, int triangles) {
+    model::Show show = dome_show(size, triangles);
+    show.outputs["main"].viewports["all"].method = way.method;
+    if (way.cubemap_scale > 0.0)
+      show.quality.cubemap_size = static_cast<int>(std::lround(matched_ * way.cubemap_scale / 8.0)) * 8;
+    auto stage = make_stage(show, ".", scene_);
+    if (!stage) {
+      print_problems(stage.error());
+      return std::nullopt;
+    }
+    if ((*stage)->plan->cubemap && way.cubemap_scale == 0.0) matched_ = (*stage)->plan->cubemap->size;
+    scene_ = (*stage)->scene;
+    renderer_.set_stage(*stage);
+    const bool many = triangles > 1'000'000;
+    const int repeats = quick_ ? 1 : (many ? 2 : 5);
+    if (!as_json_) std::fprintf(stderr, "%dk triangles, %d²: %s\n", triangles / 1000, size, way.name.c_str());
+    for (int i = 0; way.method == model::Method::automatic && i < frame::method_trial_frames; ++i)
+      renderer_.draw(0.0);
+    const Timing timing = time_frames(renderer_, poses, poses, repeats);
+    if (model::Problems failed = renderer_.take_problems(); !failed.empty()) {
+      print_problems(failed);
+      return std::nullopt;
+    }
+    const plan::ViewportPlan& viewport = (*stage)->plan->outputs.front().viewports.front();
+    report.rows.push_back(
+        {{"triangles", triangles},
+         {"size", size},
+         {"method", way.name},
+         {"ms", rounded(timing.milliseconds, 0.01)},
+         {"fps", rounded(1000.0 / timing.milliseconds, 0.01)},
+         {"sent", std::llround(timing.triangles)},
+         {"replication", rounded(timing.replication, 0.001)},
+         {"pieces", viewport.pieces ? nlohmann::ordered_json(viewport.pieces->pieces.size()) : nullptr},
+         {"cubemap",
+          (*stage)->plan->cubemap ? nlohmann::ordered_json((*stage)->plan->cubemap->size) : nullptr}});
+    return timing;
+  }
+
+  frame::Renderer& renderer_;
+  bool as_json_, quick_;
+  std::shared_ptr<const content::Scene> scene_;
+  int matched_ = 1304; ///< edge of the matched cubemap of 2048²; corrected by the first stage that has one
+  double worst_auto_ = 10.0;
+};
+
+} // namespace
+
+int bench_fisheye(bool as_json, bool quick) {
+  frame::RendererOptions options;
+  options.measure_methods = true;
+  auto offline = make_offline_renderer(options);
+  if (!offline) {
+    print_problems(offline.error());
+    return exit_unusable;
+  }
+  FisheyeBench bench(*offline->renderer, as_json, quick);
+  bench.report.device = device_line(*offline->renderer);
+  for (const int triangles : {35'000, 350'000, 3'500'000})
+    if (!bench.city(triangles)) return exit_no;
+  bench.report.notes = {
+      "Fisheye of 180°, city; cubemap faces are cropped to what the fisheye sees. Ratios are at "
+      "2048² unless a size is named, with the matched cubemap.",
+      "auto_over_best: the worst of all rows."};
+  print_report(bench.report, as_json);
+  return exit_done;
+}
+
+} // namespace cupola::cli
