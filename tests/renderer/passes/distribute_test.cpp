@@ -9,36 +9,15 @@
 
 #include "renderer/passes/distribute.h"
 #include "tests/renderer/passes/cylinder_views.h"
+#include "tests/renderer/passes/soup.h"
 
 using namespace cupola;
 
 namespace {
 
-struct Soup {
-  std::vector<content::Vertex> vertices;
-  std::vector<std::uint32_t> indices;
-  std::vector<content::Material> materials{content::Material{}};
-};
+using tests::Soup;
 
 content::Vertex at(float x, float y, float z) { return {{x, y, z}, {0, 1, 0}, {0, 0}}; }
-
-/// Triangles of all sizes around the eye.
-Soup random_soup(unsigned seed, int triangles) {
-  Soup soup;
-  soup.materials[0].double_sided = true;
-  std::mt19937 random(seed);
-  std::normal_distribution<float> normal;
-  const auto draw = [&] { return normal(random); };
-  for (int i = 0; i < triangles; ++i) {
-    const glm::vec3 center(4.0f * draw(), 4.0f * draw(), 4.0f * draw());
-    for (int corner = 0; corner < 3; ++corner) {
-      soup.indices.push_back(static_cast<std::uint32_t>(soup.vertices.size()));
-      soup.vertices.push_back(
-          at(center.x + 0.7f * draw(), center.y + 0.7f * draw(), center.z + 0.7f * draw()));
-    }
-  }
-  return soup;
-}
 
 constexpr int group_size = 16;
 
@@ -50,10 +29,7 @@ struct Distributed {
 Distributed distribute(const Soup& soup, double fov, bool edges) {
   const tests::CylinderView cylinder = tests::cylinder_view(fov, 120.0);
   const passes::StripAzimuths azimuths(cylinder.set, cylinder.map.orientation);
-  passes::FrameGeometry geometry;
-  geometry.still = soup.vertices;
-  geometry.indices = soup.indices;
-  geometry.materials = soup.materials;
+  const passes::FrameGeometry geometry = soup.geometry();
   const std::vector<passes::DrawItem> items{{0, 0, static_cast<std::uint32_t>(soup.indices.size())}};
   const passes::StripView view{cylinder.set, azimuths, glm::vec3(0.0f), glm::mat3(1.0f), 0.05f,
                                group_size,   edges};
@@ -89,7 +65,7 @@ bool covered(const Distributed& result, std::size_t strip, const glm::dvec3& poi
 
 TEST_CASE("what a piece's own perspective shows of a triangle is covered by what was emitted") {
   for (const double fov : {360.0, 150.0}) {
-    const Soup soup = random_soup(3, 150);
+    const Soup soup = tests::random_soup(3, 150, 0.7f);
     const Distributed result = distribute(soup, fov, true);
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -142,14 +118,11 @@ TEST_CASE("back faces of single-sided materials are left out") {
 }
 
 TEST_CASE("portions hold whole triangles of one material, by run and then by group") {
-  Soup soup = random_soup(9, 60);
+  Soup soup = tests::random_soup(9, 60, 0.7f);
   soup.materials.push_back(soup.materials.front());
   const tests::CylinderView cylinder = tests::cylinder_view(360.0, 120.0);
   const passes::StripAzimuths azimuths(cylinder.set, cylinder.map.orientation);
-  passes::FrameGeometry geometry;
-  geometry.still = soup.vertices;
-  geometry.indices = soup.indices;
-  geometry.materials = soup.materials;
+  const passes::FrameGeometry geometry = soup.geometry();
   const std::vector<passes::DrawItem> items{{0, 0, 60}, {1, 60, 60}, {0, 120, 60}};
   const passes::StripView view{cylinder.set, azimuths, glm::vec3(0.0f), glm::mat3(1.0f), 0.05f,
                                group_size,   false};
