@@ -15,7 +15,7 @@
 #include "renderer/gl/shader.h"
 #include "renderer/passes/cubemap_pass.h"
 #include "renderer/passes/frame_block.h"
-#include "renderer/passes/gpu_strips.h"
+#include "renderer/passes/gpu_pieces.h"
 #include "renderer/passes/piece_area.h"
 #include "renderer/passes/scene_pass.h"
 #include "renderer/plan/camera.h"
@@ -80,14 +80,24 @@ struct Cells {
   passes::Occlusion occlusion;
 };
 
+/// What the GPU engine keeps of a viewport; it is loaded anew when its pieces or its size have changed.
+struct GpuView {
+  passes::GpuPieces engine;
+  std::shared_ptr<const plan::Plan> plan; ///< owns `set`
+  const plan::PieceSet* set = nullptr;
+  int scale = 0;
+};
+
 struct Renderer::Impl {
   RendererOptions options;
   Device device = query_device();
   FixedPrograms fixed;
   passes::ScenePrograms programs;
   passes::ScenePass pass{programs};
-  std::map<std::string, passes::GpuStrips> gpu_strips; ///< by output/viewport: each keeps its own list
-  std::map<std::string, Cells> cells;                  ///< by output/viewport
+  std::map<std::string, GpuView> gpu_views; ///< by output/viewport: each keeps its own list
+  std::optional<passes::GpuPieces::Programs> gpu_programs;
+  bool gpu_refused = false;           ///< the driver does not compile them
+  std::map<std::string, Cells> cells; ///< by output/viewport
   std::map<std::string, ReferenceView> references;
   gl::VertexArray empty_array = gl::VertexArray::make();
   gl::Buffer frame_block = gl::Buffer::make();
@@ -110,6 +120,9 @@ struct Renderer::Impl {
   passes::DrawCounts draw_output(const plan::OutputPlan& output, const passes::FrameScene& scene,
                                  const plan::CameraPose& camera, double time);
   Cells& cells_of(const std::string& key, const plan::PieceSet& set);
+  bool on_gpu();
+  passes::DrawCounts draw_on_gpu(const std::string& key, const plan::ViewportPlan& viewport,
+                                 const passes::FrameScene& scene, int scale);
   passes::DrawCounts draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
                                  const passes::FrameScene& scene, int scale);
   void draw_reference(const std::string& key, const plan::ViewportPlan& viewport,
@@ -310,6 +323,39 @@ Cells& Renderer::Impl::cells_of(const std::string& key, const plan::PieceSet& se
   return own;
 }
 
+/// Pieces are drawn by the GPU engine.
+bool Renderer::Impl::on_gpu() {
+  const model::Engine engine = current->stage->show->pieces.engine;
+  if (engine == model::Engine::cpu || (engine == model::Engine::automatic && device.software)) return false;
+  if (gpu_programs || gpu_refused) return gpu_programs.has_value();
+  model::Result<passes::GpuPieces::Programs> made = passes::GpuPieces::make_programs();
+  gpu_refused = !made;
+  if (made)
+    gpu_programs = std::move(*made);
+  else
+    problems.insert(problems.end(), made.error().begin(), made.error().end());
+  return gpu_programs.has_value();
+}
+
+passes::DrawCounts Renderer::Impl::draw_on_gpu(const std::string& key, const plan::ViewportPlan& viewport,
+                                               const passes::FrameScene& scene, int scale) {
+  const plan::PieceSet& set = *viewport.pieces;
+  GpuView& own = gpu_views[key];
+  if (own.set != &set || own.plan != current->stage->plan || own.scale != scale) {
+    own.plan = current->stage->plan;
+    own.set = &set;
+    own.scale = scale;
+    const glm::dvec2 pixels(viewport.rect.width * scale, viewport.rect.height * scale);
+    if (set.strips)
+      own.engine.load_strips(set, passes::StripAzimuths(set, viewport.map.orientation));
+    else
+      own.engine.load_triangles(set, *cells_of(key, set).table, pixels);
+  }
+  return own.engine.draw(*gpu_programs, pass, scene,
+                         static_cast<std::uint64_t>(current->stage->show->pieces.max_replicated),
+                         static_cast<float>(scale));
+}
+
 passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const plan::ViewportPlan& viewport,
                                                const passes::FrameScene& scene, int scale) {
   const plan::PieceSet& set = *viewport.pieces;
@@ -319,29 +365,16 @@ passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const pla
     counts.pairs = counts.triangles;
     return counts;
   }
-  const model::Pieces& settings = current->stage->show->pieces;
-  if (!set.strips) {
-    Cells& own = cells_of(key, set);
-    own.area->prepare(fixed.area, viewport.map, glm::vec3(current->stage->show->background),
-                      current->cubemap.get());
-    return pass.draw_cells_cpu(scene, *own.table, own.occlusion,
-                               static_cast<std::uint64_t>(settings.max_replicated), scale);
-  }
-  const passes::StripAzimuths azimuths(set, viewport.map.orientation);
-  const auto ceiling = static_cast<std::uint64_t>(settings.max_replicated);
-  const bool on_gpu = settings.engine == model::Engine::gpu ||
-                      (settings.engine == model::Engine::automatic && !device.software);
-  if (!on_gpu) return pass.draw_strips_cpu(scene, set, azimuths, ceiling, scale);
-  auto engine = gpu_strips.find(key);
-  if (engine == gpu_strips.end()) {
-    model::Result<passes::GpuStrips> made = passes::GpuStrips::make();
-    if (!made) {
-      problems.insert(problems.end(), made.error().begin(), made.error().end());
-      return pass.draw_strips_cpu(scene, set, azimuths, ceiling, scale);
-    }
-    engine = gpu_strips.emplace(key, std::move(*made)).first;
-  }
-  return engine->second.draw(pass, scene, set, azimuths, ceiling, static_cast<float>(scale));
+  if (!set.strips)
+    cells_of(key, set).area->prepare(fixed.area, viewport.map, glm::vec3(current->stage->show->background),
+                                     current->cubemap.get());
+  if (on_gpu()) return draw_on_gpu(key, viewport, scene, scale);
+  const auto ceiling = static_cast<std::uint64_t>(current->stage->show->pieces.max_replicated);
+  if (set.strips)
+    return pass.draw_strips_cpu(scene, set, passes::StripAzimuths(set, viewport.map.orientation), ceiling,
+                                scale);
+  Cells& own = cells_of(key, set);
+  return pass.draw_cells_cpu(scene, *own.table, own.occlusion, ceiling, scale);
 }
 
 void Renderer::Impl::draw_reference(const std::string& key, const plan::ViewportPlan& viewport,

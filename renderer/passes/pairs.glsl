@@ -3,10 +3,23 @@
 #ifdef CUPOLA_REPLICATED
 #include "renderer/passes/replication.glsl"
 
-/// The pair that a vertex of the indirect draw belongs to. After an overflow the list is not used: items are
-/// then triangles and instances are pieces.
-uvec2 pulled_pair(uint item, uint instance) {
-  if (control.overflowed == 0u) return pairs[item];
-  return uvec2(item, instance);
+layout(location = 13) uniform bool rest; // what no list holds: items are triangles, instances are pieces
+
+struct Pair {
+  uint triangle, piece;
+  bool back;
+};
+
+bool seen_from_behind(uint triangle) {
+  vec3 a = pull_position(indices[triangle * 3u]) - frame.eye_near.xyz;
+  vec3 b = pull_position(indices[triangle * 3u + 1u]) - frame.eye_near.xyz;
+  vec3 c = pull_position(indices[triangle * 3u + 2u]) - frame.eye_near.xyz;
+  return dot(cross(b - a, c - a), a) >= 0.0;
+}
+
+Pair pulled_pair(uint item, uint instance) {
+  if (rest) return Pair(item, instance, seen_from_behind(item));
+  uvec2 pair = pairs[item];
+  return Pair(pair.x, pair.y & ~back_bit, (pair.y & back_bit) != 0u);
 }
 #endif

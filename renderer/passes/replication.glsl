@@ -4,7 +4,7 @@
 
 struct GpuCluster {
   vec4 sphere;  // centre (world) and radius; negative radius: cannot be culled
-  uvec4 range;  // first triangle, triangles, 1 when double-sided, run
+  uvec4 range;  // first triangle, triangles, 1 when double-sided, first of its counts
 };
 struct GpuPiece {
   mat3 to_screen;
@@ -17,15 +17,17 @@ struct DrawCommand {
   uint count, instances, first, base_instance;
 };
 
+const uint back_bit = 1u << 31; // of a pair's piece: the triangle is seen from behind
+
 layout(std430, binding = 2) readonly buffer Clusters { GpuCluster clusters[]; };
 layout(std430, binding = 3) readonly buffer Pieces { GpuPiece pieces[]; };
 #ifdef CUPOLA_REPLICATED
 layout(std430, binding = 4) readonly buffer Pairs { uvec2 pairs[]; };
-layout(std430, binding = 5) readonly buffer Control {
 #else
 layout(std430, binding = 4) writeonly buffer Pairs { uvec2 pairs[]; };
 layout(std430, binding = 5) buffer Control {
-#endif
-  uint overflowed; // more pairs than the list holds
-  uint total;      // pairs counted
+  uint total; // pairs counted
+  uint limit; // pairs that all rounds together hold: those of whole clusters
+  uint rest;  // first cluster whose pairs they do not hold
 } control;
+#endif

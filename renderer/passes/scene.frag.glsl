@@ -10,6 +10,9 @@ in vec4 v_color;
 #ifdef CUPOLA_EDGES
 in vec3 v_corner;
 #endif
+#if defined(CUPOLA_REPLICATED) && defined(CUPOLA_DOUBLE_SIDED)
+flat in uint v_back;
+#endif
 
 layout(binding = 0) uniform sampler2D base_color_map;
 layout(binding = 1) uniform sampler2D metallic_roughness_map;
@@ -102,7 +105,11 @@ void main() {
   surface.to_eye = v_offset / -surface.distance;
   surface.normal = normalize(v_normal);
 #ifdef CUPOLA_DOUBLE_SIDED
+#ifdef CUPOLA_REPLICATED
+  if (v_back != 0u) surface.normal = -surface.normal;
+#else
   if (!gl_FrontFacing) surface.normal = -surface.normal;
+#endif
 #endif
 #ifdef CUPOLA_METALLIC_ROUGHNESS_MAP
   vec4 metal_rough = texture(metallic_roughness_map, mapped(material.metallic_roughness_uv));

@@ -42,6 +42,9 @@ layout(location = 6) uniform int layers[6];
 
 #ifdef CUPOLA_REPLICATED
 out float gl_ClipDistance[3];
+#ifdef CUPOLA_DOUBLE_SIDED
+flat out uint v_back; // pieces may mirror: what the rasteriser finds of facing does not count
+#endif
 #endif
 
 void main() {
@@ -61,8 +64,8 @@ void main() {
 
 #ifdef CUPOLA_PULL
 #ifdef CUPOLA_REPLICATED
-  uvec2 pair = pulled_pair(uint(gl_VertexID) / 3u, uint(gl_InstanceID));
-  uint triangle = pair.x;
+  Pair pair = pulled_pair(uint(gl_VertexID) / 3u, uint(gl_InstanceID));
+  uint triangle = pair.triangle;
 #else
   uint triangle = uint(gl_VertexID) / 3u;
 #endif
@@ -90,10 +93,15 @@ void main() {
   gl_Layer = layers[gl_InstanceID];
   gl_ViewportIndex = layers[gl_InstanceID];
 #elif defined(CUPOLA_REPLICATED)
-  vec3 h = pieces[pair.y].to_screen * v;
-  gl_ClipDistance[0] = dot(pieces[pair.y].planes[0].xyz, v);
-  gl_ClipDistance[1] = dot(pieces[pair.y].planes[1].xyz, v);
-  gl_ClipDistance[2] = dot(pieces[pair.y].planes[2].xyz, v);
+  vec3 h = pieces[pair.piece].to_screen * v;
+  gl_ClipDistance[0] = dot(pieces[pair.piece].planes[0].xyz, v);
+  gl_ClipDistance[1] = dot(pieces[pair.piece].planes[1].xyz, v);
+  gl_ClipDistance[2] = dot(pieces[pair.piece].planes[2].xyz, v);
+#ifdef CUPOLA_DOUBLE_SIDED
+  v_back = pair.back ? 1u : 0u;
+#else
+  if (pair.back) gl_ClipDistance[0] = -1.0; // all three corners: nothing is left
+#endif
 #endif
   // Reversed depth near / w: one convention for every piece and face.
   gl_Position = vec4(h.xy, frame.eye_near.w, h.z);

@@ -93,7 +93,8 @@ void ScenePass::bind_program(const FrameScene& scene, VertexPath path, std::uint
     glUniformMatrix3fv(0, static_cast<GLsizei>(to_screen.size()), GL_FALSE,
                        glm::value_ptr(to_screen.front()));
   if (!layers.empty()) glUniform1iv(6, static_cast<GLsizei>(layers.size()), layers.data());
-  if (features & feature_double_sided)
+  // The GPU engine has left out what is seen from behind, and its pieces may mirror.
+  if (features & feature_double_sided || path == VertexPath::replicated)
     glDisable(GL_CULL_FACE);
   else
     glEnable(GL_CULL_FACE);

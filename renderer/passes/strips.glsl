@@ -1,6 +1,5 @@
 // Which strips a triangle touches. Twin of passes/strip_range.h; the draw's clip distances are exact, so
-// this may name a strip too many by rounding but never one too few.
-#include "renderer/passes/replication.glsl"
+// this may name a strip too many by rounding but never one too few. A part of replicate.comp.glsl.
 
 const float pi = 3.14159265358979;
 const float margin = 1e-4; // radians; float azimuths are good to 1e-6
@@ -64,4 +63,24 @@ StripRange triangle_strips(vec3 a, vec3 b, vec3 c) {
     return StripRange(0, strip_count); // the axis pierces it, or passes too close to tell
   float low = min(0.0, min(ab, ab + bc)), high = max(0.0, max(ab, ab + bc));
   return strips_between(azimuth_a + low - margin, azimuth_a + high + margin);
+}
+
+/// False when no strip can see anything of the cluster.
+bool cluster_visible(GpuCluster cluster) {
+  if (cluster.sphere.w < 0.0 || full_turn) return true;
+  vec3 p = axes_from_view * (frame.view_from_world * (cluster.sphere.xyz - frame.eye_near.xyz));
+  float distance = length(p.xz);
+  if (distance <= cluster.sphere.w) return true;
+  float half_angle = asin(min(cluster.sphere.w / distance, 1.0)) + margin;
+  return strips_between(azimuth(p) - half_angle, azimuth(p) + half_angle).count > 0;
+}
+
+void find_entries(GpuCluster cluster, uint lane, uint wanted) {
+  if (lane == 0u) entry_count = cluster_visible(cluster) ? 1u : 0u;
+}
+
+void find_pieces(uint triangle, mat3 corners, bool back, uint first_entry, uint end_entry) {
+  StripRange range = triangle_strips(axes_from_view * corners[0], axes_from_view * corners[1],
+                                     axes_from_view * corners[2]);
+  for (int i = 0; i < range.count; ++i) add_pair(triangle, uint((range.first + i) % strip_count), back);
 }

@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 
 #include "renderer/outputs/context.h"
+#include "renderer/passes/gpu_pieces.h"
 #include "renderer/passes/gpu_scene.h"
-#include "renderer/passes/gpu_strips.h"
 #include "renderer/passes/scene_programs.h"
 
 using namespace cupola;
@@ -26,8 +26,8 @@ TEST_CASE("every program compiles") {
   for (const model::Problem& problem : problems) MESSAGE(model::to_text(problem));
   CHECK(problems.empty());
 
-  const auto strips = passes::GpuStrips::make();
-  if (!strips)
-    for (const model::Problem& problem : strips.error()) MESSAGE(model::to_text(problem));
-  CHECK(strips);
+  const auto compute = passes::GpuPieces::make_programs();
+  if (!compute)
+    for (const model::Problem& problem : compute.error()) MESSAGE(model::to_text(problem));
+  CHECK(compute);
 }
