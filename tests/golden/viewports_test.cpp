@@ -46,9 +46,11 @@ Shot part(const Shot& whole, int left, int top) {
 
 TEST_CASE("viewports side by side and one above the other do not share anything") {
   using enum model::Method;
-  using enum model::Engine;
-  const std::vector<std::pair<model::Method, model::Engine>> ways{
-      {piecewise, cpu}, {piecewise, gpu}, {cubemap, automatic}, {reference, automatic}};
+  using model::Engine;
+  const std::vector<std::pair<model::Method, Engine>> ways{{piecewise, Engine::cpu},
+                                                           {piecewise, Engine::gpu},
+                                                           {cubemap, Engine::automatic},
+                                                           {reference, Engine::automatic}};
   for (const auto& way : ways)
     for (const int supersampling : {1, 2}) {
       const model::Method method = way.first;
