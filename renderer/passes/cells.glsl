@@ -1,5 +1,6 @@
 // Which triangular pieces a triangle touches: its pyramid of three planes through the eye against a tree of
-// cones, then against each piece's own pyramid. Both are convex, so the planes of either decide exactly.
+// cones, then against each piece's own pyramid. Both are convex: where they do not meet, a plane of either
+// tells them apart, or, where one lies behind the other, the plane on which w is 0.
 // Twin of passes/cells.cpp. A part of replicate.comp.glsl.
 
 struct GpuGroup {
@@ -79,6 +80,9 @@ Pyramid pyramid_of(mat3 corners) {
 }
 
 bool touches(Pyramid t, uint piece) {
+  mat3 to_screen = pieces[piece].to_screen;
+  vec3 w_row = vec3(to_screen[0].z, to_screen[1].z, to_screen[2].z);
+  if (all(lessThan(w_row * t.corners, vec3(0.0)))) return false; // behind all of the piece
   for (int i = 0; i < 3; ++i)
     if (all(lessThan(pieces[piece].planes[i].xyz * t.corners, vec3(0.0)))) return false;
   mat3 own = mat3(rays[piece * 3u].xyz, rays[piece * 3u + 1u].xyz, rays[piece * 3u + 2u].xyz);
@@ -98,7 +102,8 @@ void find_pieces(uint triangle, mat3 corners, bool back, uint first_entry, uint 
       vec3 heights = group.axis_sine.xyz * t.planes;
       vec3 reach = group.axis_sine.w * t.lengths + t.slack;
       bool everywhere = group.cosine <= -1.0;
-      if (!everywhere && any(lessThan(heights, -reach))) {
+      bool behind = all(lessThan(group.axis_sine.xyz * t.corners, vec3(0.0)));
+      if (!everywhere && (behind || any(lessThan(heights, -reach)))) {
         at = group.next;
         continue;
       }

@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/renderer/passes/exact_pairs.h"
 #include "tests/renderer/passes/soup.h"
 
 using namespace cupola;
@@ -94,28 +95,6 @@ const plan::Piece* piece_at(const plan::PieceSet& set, const glm::dvec2& at) {
   return nullptr;
 }
 
-/// Whether something of the triangle lies within the piece's pyramid: Sutherland–Hodgman in double, with a
-/// share that counts of the triangle's area.
-bool meets(const plan::Piece& piece, const tests::Soup& soup, std::size_t triangle) {
-  std::vector<glm::dvec3> polygon{soup.corner(triangle, 0), soup.corner(triangle, 1),
-                                  soup.corner(triangle, 2)};
-  const double whole = glm::length(glm::cross(polygon[1] - polygon[0], polygon[2] - polygon[0]));
-  for (const glm::dvec3& plane : piece.planes) {
-    std::vector<glm::dvec3> cut;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const glm::dvec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-      const double dp = glm::dot(plane, p), dq = glm::dot(plane, q);
-      if (dp >= 0.0) cut.push_back(p);
-      if ((dp >= 0.0) != (dq >= 0.0)) cut.push_back(p + (q - p) * (dp / (dp - dq)));
-    }
-    polygon = cut;
-  }
-  glm::dvec3 area(0.0);
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-    area += glm::cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-  return glm::length(area) > 1e-9 * whole;
-}
-
 } // namespace
 
 TEST_CASE("every pixel shows what lies nearest on its ray") {
@@ -161,7 +140,11 @@ TEST_CASE("pairs are as many as there must be") {
     const tests::Soup soup = tests::random_soup(11, 120, extent);
     std::uint64_t exact = 0;
     for (std::size_t triangle = 0; triangle < soup.triangles(); ++triangle)
-      for (const plan::Piece& piece : set.pieces) exact += meets(piece, soup, triangle) ? 1 : 0;
+      for (const plan::Piece& piece : set.pieces)
+        exact += tests::meets(piece,
+                              {soup.corner(triangle, 0), soup.corner(triangle, 1), soup.corner(triangle, 2)})
+                     ? 1
+                     : 0;
     const Result result = distribute(set, soup);
     CAPTURE(extent);
     CHECK(exact > 50);
