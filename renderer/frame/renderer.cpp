@@ -309,7 +309,8 @@ passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, do
           glm::mat3(glm::transpose(camera.orientation)),
           static_cast<float>(show.camera.near),
           show.scene.style.kind,
-          !lights.empty()};
+          !lights.empty(),
+          device.software && show.quality.samples > 1};
 }
 
 Cells& Renderer::Impl::cells_of(const std::string& key, const plan::PieceSet& set) {

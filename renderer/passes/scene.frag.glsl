@@ -1,4 +1,5 @@
 // Lights a surface point. The same for every method; variants by define for what a material has.
+#include "renderer/passes/uncovered.glsl"
 #include "renderer/shaders/frame.glsl"
 #include "renderer/shaders/material.glsl"
 #include "renderer/content/shading.glsl"
@@ -25,7 +26,7 @@ layout(location = 12) uniform float style_scale;
 
 layout(location = 0) out vec4 out_color;
 
-vec2 mapped(mat3 transform) { return (transform * vec3(v_uv, 1.0)).xy; }
+vec2 mapped(mat3 transform) { return uncovered_quad() ? vec2(0.0) : (transform * vec3(v_uv, 1.0)).xy; }
 
 #ifdef CUPOLA_NORMAL_MAP
 /// The surface normal tilted by the normal map, in the frame in which u and v rise over the triangle.

@@ -87,7 +87,7 @@ void ScenePass::bind_program(const FrameScene& scene, VertexPath path, std::uint
                              float style_scale, std::span<const glm::mat3> to_screen,
                              std::span<const int> layers) {
   const std::uint32_t features = scene.gpu.features(material);
-  glUseProgram(programs_.get(path, scene.style, scene.lights, features));
+  glUseProgram(programs_.get(path, {scene.style, scene.lights, scene.shades_uncovered}, features));
   glUniform1f(12, style_scale);
   if (!to_screen.empty())
     glUniformMatrix3fv(0, static_cast<GLsizei>(to_screen.size()), GL_FALSE,

@@ -27,6 +27,7 @@ struct FrameScene {
   float near;
   model::StyleKind style;
   bool lights;
+  bool shades_uncovered; ///< see FrameVariant
 };
 
 /// Work done, for statistics.

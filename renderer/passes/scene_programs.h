@@ -18,11 +18,19 @@ enum class VertexPath : std::uint8_t { direct, layered, emitted, replicated };
 /// strip is a draw of its own.
 [[nodiscard]] bool per_strip_scissors();
 
+/// What all programs of a frame have in common.
+struct FrameVariant {
+  model::StyleKind style = model::StyleKind::textured;
+  bool lights = false; ///< the scene has punctual lights
+  /// Multisampled, by a driver that also shades pixels of which no sample is left: see uncovered.glsl.
+  bool shades_uncovered = false;
+};
+
 class ScenePrograms {
 public:
-  /// `features`: MaterialFeature bits; `lights`: the scene has punctual lights.
+  /// `features`: MaterialFeature bits.
   /// Fails only when the driver refuses a shader; the problem is kept and given once by take_problems().
-  [[nodiscard]] GLuint get(VertexPath path, model::StyleKind style, bool lights, std::uint32_t features);
+  [[nodiscard]] GLuint get(VertexPath path, const FrameVariant& frame, std::uint32_t features);
   [[nodiscard]] model::Problems take_problems();
 
 private:

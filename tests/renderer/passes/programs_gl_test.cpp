@@ -21,7 +21,9 @@ TEST_CASE("every program compiles") {
   for (const auto path : {direct, layered, emitted, replicated})
     for (const auto style : {textured, wireframe, hatching})
       for (const bool lights : {false, true})
-        for (const std::uint32_t feature : features) CHECK(programs.get(path, style, lights, feature) != 0);
+        for (const bool uncovered : {false, true})
+          for (const std::uint32_t feature : features)
+            CHECK(programs.get(path, {style, lights, uncovered}, feature) != 0);
   const model::Problems problems = programs.take_problems();
   for (const model::Problem& problem : problems) MESSAGE(model::to_text(problem));
   CHECK(problems.empty());
