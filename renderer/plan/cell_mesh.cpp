@@ -358,6 +358,7 @@ void CellMesh::balance() {
 }
 
 void CellMesh::append_to(PieceSet& set) const {
+  set.unfinished = lattice_.triangles().size() >= budget_;
   std::vector<std::uint32_t> numbers(nodes_.size(), Lattice::none);
   const auto screen = [&](std::uint32_t node) { return picture_.image(glm::dvec2(lattice_.points()[node])); };
   const double unfit = std::max(limit_, margin * worst_drawn);

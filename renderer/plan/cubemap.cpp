@@ -69,8 +69,32 @@ public:
       , margin_(2.0 * texel_) {
     const double pixels = 4.0 * std::max(rect.width, rect.height);
     deepest_ = std::max(least_ + 1, static_cast<int>(std::ceil(std::log2(pixels))));
+  }
+
+  void add_all() {
     add_samples();
     divide({0.0, 0.0}, 1.0, 0);
+  }
+
+  /// A part of the picture. False where its samples are too far apart to say what is seen between them.
+  bool add_triangle(const std::array<glm::dvec2, 3>& corners) {
+    constexpr int steps = 6;
+    constexpr double farthest = 0.2; // radians
+    std::optional<Cap> cap;
+    for (int i = 0; i <= steps; ++i)
+      for (int j = 0; i + j <= steps; ++j) {
+        const double a = double(i) / steps, b = double(j) / steps;
+        const auto direction =
+            projection::ray(map_, a * corners[0] + b * corners[1] + (1.0 - a - b) * corners[2]);
+        if (!direction) continue;
+        const glm::dvec3 unit = glm::normalize(*direction);
+        if (!cap) cap = Cap{unit, 0.0};
+        cap->radius = std::max(cap->radius, angle(cap->center, unit));
+      }
+    if (!cap || cap->radius > farthest) return false;
+    cap->radius = 1.25 * cap->radius + margin_;
+    add(*cap);
+    return true;
   }
 
   [[nodiscard]] CubeFace face(std::size_t index, int size) const {
@@ -191,7 +215,19 @@ int matched_cubemap_size(const projection::Map& map, const PixelRect& rect) {
 CubemapPlan make_cubemap(const projection::Map& map, const PixelRect& rect, std::optional<int> size) {
   CubemapPlan plan;
   plan.size = size ? *size : std::clamp(matched_cubemap_size(map, rect), min_cubemap_size, max_cubemap_size);
-  const Seen seen(map, rect, plan.size);
+  Seen seen(map, rect, plan.size);
+  seen.add_all();
+  for (std::size_t i = 0; i < plan.faces.size(); ++i) plan.faces[i] = seen.face(i, plan.size);
+  return plan;
+}
+
+CubemapPlan make_cubemap(const projection::Map& map, const PixelRect& rect, std::optional<int> size,
+                         const std::vector<std::array<glm::dvec2, 3>>& parts) {
+  CubemapPlan plan;
+  plan.size = size ? *size : std::clamp(matched_cubemap_size(map, rect), min_cubemap_size, max_cubemap_size);
+  Seen seen(map, rect, plan.size);
+  for (const auto& part : parts)
+    if (!seen.add_triangle(part)) return make_cubemap(map, rect, size);
   for (std::size_t i = 0; i < plan.faces.size(); ++i) plan.faces[i] = seen.face(i, plan.size);
   return plan;
 }

@@ -18,6 +18,7 @@ constexpr int max_edge = 16384; ///< pixels that any picture may have along an e
 constexpr int coarsest_mip =
     16; ///< minification up to which mipmapped cubemaps are right beyond a crop's edge
 constexpr std::size_t max_strips = 4096; ///< of a viewport
+constexpr double noted_share = 0.01;     ///< of a viewport's pixels, above which looking up is reported
 
 /// Pixel borders of a fraction. Ties go up even when the sum of two fractions misses by a rounding, so that
 /// viewports that meet in the file meet in pixels.
@@ -35,11 +36,16 @@ PixelRect enlarged(const PixelRect& rect, int factor) {
   return {rect.x * factor, rect.y * factor, rect.width * factor, rect.height * factor};
 }
 
-std::string_view kind(const model::Shape& shape) {
-  constexpr std::array<std::string_view, std::variant_size_v<model::Shape>> names{
-      "perspective",  "cylinder", "fisheye", "equirectangular", "stereographic",
-      "orthographic", "mercator", "panini",  "cube_cross"};
-  return names[shape.index()];
+bool too_many(const PieceSet& set) {
+  return set.unfinished || (set.strips && set.pieces.size() > max_strips);
+}
+
+/// Share of a viewport's pixels that looked-up triangles cover, about.
+double looked_up_share(const PieceSet& set) {
+  double doubled = 0.0;
+  for (const auto& [a, b, c] : set.looked_up)
+    doubled += std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+  return std::min(1.0, 0.5 * doubled / 4.0); // the viewport is 2 × 2
 }
 
 class Planner {
@@ -121,7 +127,7 @@ private:
     made.map = projection::make_map(named->second, double(made.rect.width) / made.rect.height);
     if (!projection::inside(made.map)) return std::nullopt; // reported with the projection
     if (made.method == model::Method::piecewise || made.method == model::Method::automatic)
-      add_pieces(pointer, named->second.shape, made);
+      add_pieces(pointer, made);
     return made;
   }
 
@@ -143,28 +149,42 @@ private:
     return good;
   }
 
-  void add_pieces(const std::string& pointer, const model::Shape& shape, ViewportPlan& viewport) {
-    if (!std::holds_alternative<model::Cylinder>(shape) &&
-        !std::holds_alternative<model::Perspective>(shape)) {
-      if (viewport.method == model::Method::automatic) return; // the cubemap it is
-      report(Code::pieces_unsupported, pointer + "/method", "'cubemap' or 'reference' for this projection",
-             fmt::format("'piecewise' with kind '{}'", kind(shape)), "Use the method 'cubemap'.");
-      return;
-    }
+  void add_pieces(const std::string& pointer, ViewportPlan& viewport) {
     const double wanted = show_.pieces.max_error;
     viewport.pieces = make_strips(viewport.map, viewport.rect, wanted);
+    if (!viewport.pieces) viewport.pieces = make_cells(viewport.map, viewport.rect, wanted);
+    if (viewport.method == model::Method::automatic) {
+      // The cubemap is there for what pieces cannot do.
+      if (viewport.pieces && (too_many(*viewport.pieces) || viewport.pieces->pieces.empty()))
+        viewport.pieces.reset();
+      return;
+    }
     if (!viewport.pieces) {
-      report(Code::degenerate_projection, pointer + "/method",
-             "pixels that show less than a third of a turn each, and at least one that shows anything",
-             fmt::format("{} pixels across", viewport.rect.width),
-             "Widen the viewport, or use the method 'cubemap'.");
-    } else if (viewport.pieces->pieces.size() > max_strips) {
-      report(Code::over_budget, pointer + "/method", fmt::format("at most {} strips", max_strips),
-             fmt::format("{}", viewport.pieces->pieces.size()), "Raise /pieces/max_error.");
-    } else if (viewport.pieces->max_error > wanted) {
+      report(Code::degenerate_projection, pointer + "/method", "at least one pixel that shows anything",
+             "none", "Enlarge the viewport, or raise the projection's zoom.");
+      return;
+    }
+    const PieceSet& set = *viewport.pieces;
+    if (too_many(set)) {
+      report(Code::over_budget, pointer + "/method",
+             fmt::format("at most {} pieces", set.strips ? max_strips : max_cells),
+             set.unfinished ? "more" : fmt::format("{}", set.pieces.size()), "Raise /pieces/max_error.");
+      return;
+    }
+    if (set.max_error > wanted)
       report(Code::over_budget, pointer + "/method", fmt::format("an error of at most {} pixels", wanted),
-             fmt::format("{:.3g} with strips of one pixel", viewport.pieces->max_error),
+             fmt::format("{:.3g} with {}", set.max_error,
+                         set.strips ? "strips of one pixel" : "the smallest pieces"),
              "Widen the viewport, or raise /pieces/max_error.", Severity::warning);
+    if (const double share = looked_up_share(set); share > noted_share)
+      report(Code::looked_up, pointer + "/method",
+             "a projection that perspectives follow everywhere, for all of it to be drawn piecewise",
+             fmt::format("{:.2g} % of the pixels looked up in a cubemap", 100.0 * share),
+             "Show less of the surroundings of a pole or rim, or use the method 'cubemap'.",
+             Severity::warning);
+    if (set.pieces.empty()) {
+      viewport.method = model::Method::cubemap;
+      viewport.pieces.reset();
     }
   }
 
@@ -203,9 +223,14 @@ private:
   /// Mipmaps read far beyond what a pixel sees: the crops are then those of texels as large as the coarsest
   /// level that is still to be right.
   [[nodiscard]] CubemapPlan cropped(const ViewportPlan& viewport, int size) const {
-    if (!show_.quality.cubemap_mipmaps) return make_cubemap(viewport.map, viewport.rect, size);
+    const auto of_size = [&](int n) {
+      return viewport.method == model::Method::piecewise && viewport.pieces
+                 ? make_cubemap(viewport.map, viewport.rect, n, viewport.pieces->looked_up)
+                 : make_cubemap(viewport.map, viewport.rect, n);
+    };
+    if (!show_.quality.cubemap_mipmaps) return of_size(size);
     const int coarse = std::max(1, size / coarsest_mip);
-    CubemapPlan plan = make_cubemap(viewport.map, viewport.rect, coarse);
+    CubemapPlan plan = of_size(coarse);
     plan.size = size;
     for (CubeFace& face : plan.faces) {
       const PixelRect& c = face.crop;

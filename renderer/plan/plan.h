@@ -75,6 +75,7 @@ struct PieceSet {
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< by piece, its corners, counter-clockwise on screen
   std::vector<Shown> shown;                            ///< by piece
   std::vector<PieceGroup> groups;                      ///< a tree in pre-order, groups[0] holds all
+  bool unfinished = false; ///< more pieces than max_cells would be needed: what is too coarse is looked up
   bool fills = true; ///< every pixel centre of the viewport is shown; else what is not shown stays as it was
   /// Screen triangles where no pyramid of rays is fit to draw (a pole, the rim beyond 340°, a fold): looked
   /// up in a cubemap instead. Corners in normalised device coordinates, y up.
@@ -100,7 +101,7 @@ struct ViewportPlan {
   PixelRect rect; ///< in output pixels, before supersampling
   projection::Map map;
   model::Method method{};
-  std::optional<PieceSet> pieces; ///< methods piecewise and automatic (there only where it can)
+  std::optional<PieceSet> pieces; ///< methods piecewise and automatic (there only where it can); none: cubemap
 };
 
 /// The cubemap has to hold what this viewport shows.
@@ -117,8 +118,7 @@ struct OutputPlan {
 
 struct Plan {
   std::vector<OutputPlan> outputs;
-  std::optional<CubemapPlan>
-      cubemap; ///< one for all viewports with method cubemap: size and faces are their union
+  std::optional<CubemapPlan> cubemap; ///< one for all viewports that read it: size and faces are their union
 };
 
 struct Planned {
@@ -164,5 +164,10 @@ inline constexpr int min_cubemap_size = 16, max_cubemap_size = 8192; ///< that "
 /// given, or the matched one within the limits.
 [[nodiscard]] CubemapPlan make_cubemap(const projection::Map& map, const PixelRect& rect,
                                        std::optional<int> size);
+
+/// The same for parts of the viewport alone: triangles in normalised device coordinates, y up.
+[[nodiscard]] CubemapPlan make_cubemap(const projection::Map& map, const PixelRect& rect,
+                                       std::optional<int> size,
+                                       const std::vector<std::array<glm::dvec2, 3>>& parts);
 
 } // namespace cupola::plan

@@ -62,7 +62,7 @@ TEST_CASE("positions are those of values") {
 TEST_CASE("problems found later get the place of their value, or of the nearest that stands in the text") {
   const auto loaded = loader::parse_show(small, "small.json");
   REQUIRE(loaded);
-  model::Problems problems{{model::Code::pieces_unsupported, "/outputs/main/viewports/a/method"},
+  model::Problems problems{{model::Code::degenerate_projection, "/outputs/main/viewports/a/method"},
                            {model::Code::over_budget, "/outputs/main/viewports/a/order"},
                            {model::Code::over_budget, "/quality/cubemap_size"},
                            {model::Code::over_budget, "no pointer"}};

@@ -282,5 +282,7 @@ TEST_CASE("pictures of any size, errors of any size: bounded") {
   const auto fine = fisheye({0, 0, 2048, 2048}, 0.0);
   REQUIRE(fine);
   CHECK(fine->pieces.size() + fine->looked_up.size() <= max_cells + 100); // what a last split forces
+  CHECK(fine->unfinished);
+  CHECK_FALSE(large->unfinished);
   CHECK_FALSE(fisheye({0, 0, 0, 10}, 0.25));
 }

@@ -125,26 +125,65 @@ TEST_CASE("all geometric problems are told at once") {
   show.outputs["huge"].viewports["x"].projection = "p";
   show.outputs["coarse"].width = 2;
   show.projections["turn"].shape = model::Cylinder{{360}, {90}};
+  show.projections["turn"].zoom = 0.1; // both columns are more than half a turn from the middle
   show.outputs["coarse"].viewports["y"].projection = "turn";
   show.outputs["coarse"].viewports["y"].method = Method::piecewise;
   show.quality.supersampling = 2;
   const auto planned = make_plan(show);
   REQUIRE_FALSE(planned);
   const model::Problems& found = planned.error();
-  CHECK(reported(found, Code::pieces_unsupported, "/outputs/main/viewports/v/method"));
-  CHECK(reported(found, Code::pieces_unsupported, "/outputs/main/viewports/w/method"));
   CHECK(reported(found, Code::empty_viewport, "/outputs/main/viewports/thin/width"));
   CHECK(reported(found, Code::empty_viewport, "/outputs/main/viewports/flat/height"));
   CHECK(reported(found, Code::degenerate_projection, "/projections/out/off_axis"));
   CHECK(reported(found, Code::over_budget, "/outputs/huge/viewports/x/width"));
   CHECK(reported(found, Code::degenerate_projection, "/outputs/coarse/viewports/y/method"));
-  CHECK(found.size() == 7);
+  CHECK(reported(found, Code::looked_up, "/outputs/main/viewports/w/method"));
+  CHECK(found.size() == 6);
   for (const model::Problem& problem : found) {
     CHECK_FALSE(problem.expected.empty());
     CHECK_FALSE(problem.found.empty());
     CHECK_FALSE(problem.advice.empty());
     CHECK(problem.at == model::Position{});
   }
+}
+
+TEST_CASE("what no piece can draw is looked up: its faces alone, and said so") {
+  model::Show show = one_viewport(model::Equirectangular{}, Method::piecewise);
+  show.outputs["main"].width = 1024;
+  show.outputs["main"].height = 512;
+  const auto planned = make_plan(show);
+  REQUIRE(planned);
+  CHECK(reported(planned->warnings, Code::looked_up, "/outputs/main/viewports/v/method"));
+  REQUIRE(planned->plan.cubemap);
+  const CubemapPlan& cubemap = *planned->plan.cubemap;
+  for (const std::size_t face : {0, 1, 4, 5}) CHECK_FALSE(cubemap.faces[face].seen);
+  for (const std::size_t face : {2, 3}) { // a small part about each pole
+    CHECK(cubemap.faces[face].seen);
+    CHECK(cubemap.faces[face].crop.width < cubemap.size / 4);
+    CHECK(cubemap.faces[face].crop.x + cubemap.faces[face].crop.width / 2 ==
+          doctest::Approx(cubemap.size / 2).epsilon(0.02));
+  }
+
+  show.projections["p"].shape = model::Fisheye{};
+  const auto without = make_plan(show);
+  REQUIRE(without);
+  CHECK_FALSE(without->plan.cubemap);
+  CHECK(without->warnings.empty());
+
+  show.outputs["main"].width = show.outputs["main"].height = 1;
+  const auto pixel = make_plan(show);
+  REQUIRE(pixel);
+  CHECK(pixel->plan.outputs[0].viewports[0].method == Method::cubemap);
+  CHECK(reported(pixel->warnings, Code::looked_up, "/outputs/main/viewports/v/method"));
+}
+
+TEST_CASE("more pieces than may be: a problem that says what to do") {
+  model::Show show = one_viewport(model::Fisheye{{340}}, Method::piecewise);
+  show.outputs["main"].width = show.outputs["main"].height = 8192;
+  show.pieces.max_error = 0.01;
+  const auto planned = make_plan(show);
+  REQUIRE_FALSE(planned);
+  CHECK(reported(planned.error(), Code::over_budget, "/outputs/main/viewports/v/method"));
 }
 
 TEST_CASE("a Panini's field of view must suit its distance") {

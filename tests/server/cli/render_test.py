@@ -98,9 +98,12 @@ class Render(unittest.TestCase):
         (self.folder / "bad.json").write_text("{}")
         self.run_cupola("render", self.folder / "bad.json", *to, expect=1)
         self.assertIn(".bmp", self.render("--output", "dome", "-o", self.folder / "x.bmp", expect=1).stderr)
-        # The dome has no pieces: a problem of the show, with its place.
-        done = self.render("--method", "piecewise", "-o", self.folder / "out", expect=1)
-        self.assertRegex(done.stderr, r"/outputs/dome/viewports/all/method: .*\[PLN-101\]")
+        # A problem of the show, with its place: a perspective of more than half a turn.
+        show = json.loads(json.dumps(SHOW))
+        show["projections"]["wall"] = {"kind": "panini", "distance": 0, "horizontal_fov": 200}
+        (self.folder / "wide.json").write_text(json.dumps(show))
+        done = self.run_cupola("render", self.folder / "wide.json", "-o", self.folder / "out", expect=1)
+        self.assertRegex(done.stderr, r"/projections/wall/horizontal_fov: .*\[PLN-102\]")
         done = self.render("--output", "wall", "-o", "/proc/cupola/x.png", expect=1)
         self.assertIn("[OUT-102]", done.stderr)
         self.assertIn("a folder for several", self.render(*to, expect=2).stderr)

@@ -67,10 +67,11 @@ class Validate(unittest.TestCase):
         projections = '"projections": {"p": {"kind": "fisheye"}}'
         with tempfile.TemporaryDirectory() as folder:
             show, model = Path(folder, "show.json"), Path(folder, "model.gltf")
-            show.write_text('{"version": 1, %s, %s}' % (projections, outputs % "piecewise"))
+            wide = '"projections": {"p": {"kind": "panini", "distance": 0,\n "horizontal_fov": 200}}'
+            show.write_text('{"version": 1, %s, %s}' % (wide, outputs % "piecewise"))
             done = cupola("validate", show)
             self.assertEqual(done.returncode, 1)
-            self.assertRegex(done.stdout, r"show\.json:2:12: error: /outputs/o/viewports/v/method: .*\[PLN-101\]")
+            self.assertRegex(done.stdout, r"show\.json:2:20: error: /projections/p/horizontal_fov: .*\[PLN-102\]")
 
             content = '"scene": {"content": {"kind": "gltf",\n\n "file": "model.gltf"}}'
             show.write_text('{"version": 1, %s, %s, %s}' % (content, projections, outputs % "cubemap"))
