@@ -25,6 +25,7 @@ std::vector<Way> ways() {
   const model::Cylinder round{{360.0}, {134.0}}, part{{220.0}, {100.0}};
   const model::Perspective flat{{90.0}, std::nullopt};
   const model::Equirectangular whole{{360.0}, {180.0}};
+  const model::Fisheye dome{{180.0}}, wide{{270.0}};
   using enum model::Method;
   return {{"cylinder 360, cpu", round, piecewise, model::Engine::cpu, 1, false},
           {"cylinder 360, gpu", round, piecewise, model::Engine::gpu, 1, false},
@@ -33,6 +34,11 @@ std::vector<Way> ways() {
           {"cylinder 220, cpu", part, piecewise, model::Engine::cpu, 1, false},
           {"cylinder 220, gpu", part, piecewise, model::Engine::gpu, 1, false},
           {"perspective", flat, piecewise, model::Engine::automatic, 1, false},
+          {"fisheye 180, cpu", dome, piecewise, model::Engine::cpu, 1, false},
+          {"fisheye 180, gpu", dome, piecewise, model::Engine::gpu, 1, false},
+          {"fisheye 180, gpu, multisampled", dome, piecewise, model::Engine::gpu, 4, false},
+          {"fisheye 270, gpu", wide, piecewise, model::Engine::gpu, 1, false},
+          {"equirectangular, gpu", whole, piecewise, model::Engine::gpu, 1, false},
           {"cylinder 360, cubemap", round, cubemap, model::Engine::automatic, 1, false},
           {"equirectangular, cubemap", whole, cubemap, model::Engine::automatic, 1, false},
           {"equirectangular, cubemap, single pass", whole, cubemap, model::Engine::automatic, 1, true},
