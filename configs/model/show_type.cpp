@@ -348,7 +348,8 @@ const Type& pieces_type() {
           .choice("engine", &Pieces::engine, Cost::rebuild,
                   "Which processor distributes primitives to pieces; auto chooses by the device.")
           .integer("max_replicated", &Pieces::max_replicated, Unit::none, {1000, 1e9}, Cost::rebuild,
-                   "Ceiling on replicated triangles in a frame.")
+                   "Ceiling on replicated triangles in memory; what is more is drawn in several goes, none "
+                   "is left out.")
           .take();
   return type;
 }
