@@ -82,9 +82,12 @@ Pyramid pyramid_of(mat3 corners) {
 bool touches(Pyramid t, uint piece) {
   mat3 to_screen = pieces[piece].to_screen;
   vec3 w_row = vec3(to_screen[0].z, to_screen[1].z, to_screen[2].z);
-  if (all(lessThan(w_row * t.corners, vec3(0.0)))) return false; // behind all of the piece
-  for (int i = 0; i < 3; ++i)
-    if (all(lessThan(pieces[piece].planes[i].xyz * t.corners, vec3(0.0)))) return false;
+  vec3 w = w_row * t.corners;
+  if (all(lessThan(w, vec3(0.0)))) return false; // behind all of the piece
+  for (int i = 0; i < 3; ++i) {
+    vec4 plane = pieces[piece].planes[i];
+    if (all(lessThan(plane.xyz * t.corners + plane.w * w, vec3(0.0)))) return false;
+  }
   mat3 own = mat3(rays[piece * 3u].xyz, rays[piece * 3u + 1u].xyz, rays[piece * 3u + 2u].xyz);
   for (int i = 0; i < 3; ++i)
     if (all(lessThan(t.planes[i] * own, vec3(-t.slack[i])))) return false;

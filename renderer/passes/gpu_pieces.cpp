@@ -63,23 +63,20 @@ std::uint32_t items_of(std::uint32_t triangles) {
 
 } // namespace
 
-std::array<glm::dvec3, 3> widened_planes(const plan::PieceSet& set, std::size_t piece,
-                                         const glm::dvec2& pixels) {
-  const glm::dmat3& m = set.pieces[piece].to_screen;
-  const glm::dvec3 w_row(m[0].z, m[1].z, m[2].z);
-  std::array<glm::dvec3, 3> planes = set.pieces[piece].planes;
+glm::dvec3 overlap_shares(const plan::PieceSet& set, std::size_t piece, const glm::dvec2& pixels) {
   std::array<const plan::Corner*, 3> corners{};
   for (std::size_t i = 0; i < 3; ++i) corners[i] = &set.corners[set.triangles[piece][i]];
   const auto place = [&](std::size_t i) { return corners[i % 3]->screen * 0.5 * pixels; };
   const glm::dvec2 a = place(1) - place(0), b = place(2) - place(0);
   const double area = std::abs(a.x * b.y - a.y * b.x);
+  glm::dvec3 shares;
   for (std::size_t i = 0; i < 3; ++i) {
     // A pixel is 1 / height of the screen's barycentric coordinate bᵢ wᵢ / w of corner i.
     const double height = area / glm::distance(place(i + 1), place(i + 2));
     const double share = height > 20.0 * piece_overlap ? piece_overlap / height : 0.05;
-    planes[i] += share / corners[i]->weight * w_row;
+    shares[static_cast<int>(i)] = share / corners[i]->weight;
   }
-  return planes;
+  return shares;
 }
 
 model::Result<GpuPieces::Programs> GpuPieces::make_programs() {
@@ -104,7 +101,8 @@ model::Result<GpuPieces::Programs> GpuPieces::make_programs() {
 GpuPieces::GpuPieces()
     : empty_array_(gl::VertexArray::make()) {}
 
-void GpuPieces::load_pieces(const plan::PieceSet& set, std::span<const std::array<glm::dvec3, 3>> planes) {
+/// `overlaps`: none, or by piece.
+void GpuPieces::load_pieces(const plan::PieceSet& set, std::span<const glm::dvec3> overlaps) {
   std::vector<GpuPiece> pieces;
   pieces.reserve(set.pieces.size());
   for (std::size_t i = 0; i < set.pieces.size(); ++i) {
@@ -112,7 +110,8 @@ void GpuPieces::load_pieces(const plan::PieceSet& set, std::span<const std::arra
     const glm::mat3 m(set.pieces[i].to_screen);
     for (int column = 0; column < 3; ++column) made.to_screen[column] = glm::vec4(m[column], 0.0f);
     for (std::size_t plane = 0; plane < static_cast<std::size_t>(set.pieces[i].plane_count); ++plane)
-      made.planes[plane] = glm::vec4(glm::vec3(planes[i][plane]), 0.0f);
+      made.planes[plane] = glm::vec4(set.pieces[i].planes[plane],
+                                     overlaps.empty() ? 0.0 : overlaps[i][static_cast<int>(plane)]);
     pieces.push_back(made);
   }
   refill(pieces_, pieces.data(), pieces.size() * sizeof(GpuPiece));
@@ -121,9 +120,7 @@ void GpuPieces::load_pieces(const plan::PieceSet& set, std::span<const std::arra
 
 void GpuPieces::load_strips(const plan::PieceSet& set, const StripAzimuths& azimuths) {
   strips_ = true;
-  std::vector<std::array<glm::dvec3, 3>> planes;
-  for (const plan::Piece& piece : set.pieces) planes.push_back(piece.planes);
-  load_pieces(set, planes);
+  load_pieces(set, {});
   refill(search_, azimuths.borders().data(), azimuths.borders().size() * sizeof(float));
   axes_from_view_ = azimuths.axes_from_view();
   full_turn_ = azimuths.full_turn();
@@ -131,15 +128,15 @@ void GpuPieces::load_strips(const plan::PieceSet& set, const StripAzimuths& azim
 
 void GpuPieces::load_triangles(const plan::PieceSet& set, const PieceTable& table, const glm::dvec2& pixels) {
   strips_ = false;
-  std::vector<std::array<glm::dvec3, 3>> planes;
+  std::vector<glm::dvec3> overlaps;
   std::vector<glm::vec4> rays;
-  planes.reserve(set.pieces.size());
+  overlaps.reserve(set.pieces.size());
   rays.reserve(set.pieces.size() * 3);
   for (std::size_t i = 0; i < set.pieces.size(); ++i) {
-    planes.push_back(widened_planes(set, i, pixels));
+    overlaps.push_back(overlap_shares(set, i, pixels));
     for (const std::uint32_t corner : set.triangles[i]) rays.emplace_back(set.corners[corner].ray, 0.0);
   }
-  load_pieces(set, planes);
+  load_pieces(set, overlaps);
   refill(rays_, rays.data(), rays.size() * sizeof(glm::vec4));
   std::vector<GpuGroup> groups;
   groups.reserve(table.groups().size());
@@ -224,7 +221,7 @@ void GpuPieces::bind_buffers(const FrameScene& scene, const List& list) const {
 
 void GpuPieces::draw_round(ScenePass& pass, const FrameScene& scene, const std::vector<Run>& runs,
                            const List& list, std::uint32_t round, float style_scale) const {
-  constexpr GLint location_rest = 13;
+  constexpr GLint location_rest = 13, location_overlap = 14;
   glBindVertexArray(empty_array_.id());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, list.commands.id());
   const auto command = [&](std::size_t run, std::size_t number) {
@@ -232,6 +229,9 @@ void GpuPieces::draw_round(ScenePass& pass, const FrameScene& scene, const std::
   };
   for (std::size_t run = 0; run < runs.size(); ++run) {
     pass.bind_program(scene, VertexPath::replicated, runs[run].material, style_scale, {}, {});
+    const bool blended =
+        scene.gpu.scene().materials[runs[run].material].alpha_mode == content::AlphaMode::blend;
+    glUniform1f(location_overlap, blended ? 0.0f : 1.0f);
     glUniform1i(location_rest, 0);
     glDrawArraysIndirect(GL_TRIANGLES, command(run, round));
     if (round + 1 < list.rounds) continue;

@@ -16,13 +16,14 @@
 namespace cupola::passes {
 
 /// How far triangular pieces reach over each other's borders, in pixels: nothing opens between them where a
-/// pixel's centre, or another place at which it is sampled, lies on a border.
+/// pixel's centre, or another place at which it is sampled, lies on a border. Blended materials do without:
+/// there they would show twice.
 inline constexpr double piece_overlap = 1.0 / 64.0;
 
-/// The planes of a triangular piece moved outwards by `piece_overlap`, or by a twentieth of the piece where
-/// it is narrower than that. `pixels`: the size of what the piece is drawn into.
-[[nodiscard]] std::array<glm::dvec3, 3> widened_planes(const plan::PieceSet& set, std::size_t piece,
-                                                       const glm::dvec2& pixels);
+/// By how much of w the planes of a triangular piece are to be moved for `piece_overlap`, or for a twentieth
+/// of the piece where it is narrower than 20 of them. `pixels`: the size of what the piece is drawn into.
+[[nodiscard]] glm::dvec3 overlap_shares(const plan::PieceSet& set, std::size_t piece,
+                                        const glm::dvec2& pixels);
 
 /// The pieces of one viewport and the lists of pairs that are kept for it.
 class GpuPieces {
@@ -61,7 +62,7 @@ private:
     gl::Fence fence;
     const std::uint32_t* mapped = nullptr;
   };
-  void load_pieces(const plan::PieceSet& set, std::span<const std::array<glm::dvec3, 3>> planes);
+  void load_pieces(const plan::PieceSet& set, std::span<const glm::dvec3> overlaps);
   void draw_list(const Programs& programs, ScenePass& pass, const FrameScene& scene,
                  std::span<const DrawItem> items, List& list, std::uint64_t max_pairs, float style_scale);
   void make_room(List& list, std::uint64_t triangles, std::uint64_t max_pairs) const;

@@ -8,7 +8,7 @@ struct GpuCluster {
 };
 struct GpuPiece {
   mat3 to_screen;
-  vec4 planes[3]; // inside where dot(plane.xyz, v) >= 0; unused ones are zero
+  vec4 planes[3]; // inside where dot(plane.xyz, v) >= 0; w: its overlap, times w; unused ones are zero
 };
 struct GpuRun {
   uvec4 range;    // first cluster, clusters, first triangle, triangles

@@ -94,9 +94,9 @@ void main() {
   gl_ViewportIndex = layers[gl_InstanceID];
 #elif defined(CUPOLA_REPLICATED)
   vec3 h = pieces[pair.piece].to_screen * v;
-  gl_ClipDistance[0] = dot(pieces[pair.piece].planes[0].xyz, v);
-  gl_ClipDistance[1] = dot(pieces[pair.piece].planes[1].xyz, v);
-  gl_ClipDistance[2] = dot(pieces[pair.piece].planes[2].xyz, v);
+  gl_ClipDistance[0] = clip_distance(pieces[pair.piece].planes[0], v, h.z);
+  gl_ClipDistance[1] = clip_distance(pieces[pair.piece].planes[1], v, h.z);
+  gl_ClipDistance[2] = clip_distance(pieces[pair.piece].planes[2], v, h.z);
 #ifdef CUPOLA_DOUBLE_SIDED
   v_back = pair.back ? 1u : 0u;
 #else
