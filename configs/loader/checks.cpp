@@ -211,6 +211,29 @@ void off_axis(const Show& show, Findings& out) {
            {}});
 }
 
+/// The offsets of a camera texture fit its grid, or there are none.
+void grids(const Show& show, Findings& out) {
+  for (const auto& [name, projection] : show.projections) {
+    const auto* texture = std::get_if<model::CameraTexture>(&projection.shape);
+    if (!texture || texture->offsets.empty()) continue;
+    const std::string at = "/projections/" + escaped(name);
+    const auto check = [&](const std::string& place, std::size_t found, int cells, const char* what,
+                           const char* key) {
+      if (found == static_cast<std::size_t>(cells) + 1) return true;
+      out.push_back({{Code::grid_size, place,
+                      std::to_string(cells + 1) + ' ' + what + ", one more than \"" + key + "\"",
+                      std::to_string(found)},
+                     {at + '/' + key}});
+      return false;
+    };
+    if (!check(at + "/offsets", texture->offsets.size(), texture->rows, "rows", "rows")) continue;
+    for (std::size_t row = 0; row < texture->offsets.size(); ++row)
+      if (!check(at + "/offsets/" + std::to_string(row), texture->offsets[row].size(), texture->columns,
+                 "pairs", "columns"))
+        break;
+  }
+}
+
 void listeners(const Show& show, Findings& out) {
   const auto& [http, osc] = show.control;
   const auto meaning = [](const std::string& address) -> std::string {
@@ -229,6 +252,8 @@ void listeners(const Show& show, Findings& out) {
 double own_aspect(const model::Shape& shape) {
   if (const auto* flat = std::get_if<model::Perspective>(&shape); flat && flat->vertical_fov)
     return std::tan(flat->horizontal_fov.radians() / 2) / std::tan(flat->vertical_fov->radians() / 2);
+  if (const auto* bent = std::get_if<model::CameraTexture>(&shape); bent && bent->vertical_fov)
+    return std::tan(bent->horizontal_fov.radians() / 2) / std::tan(bent->vertical_fov->radians() / 2);
   if (const auto* map = std::get_if<model::Equirectangular>(&shape))
     return map->horizontal_fov.degrees / map->vertical_fov.degrees;
   if (const auto* map = std::get_if<model::Mercator>(&shape))
@@ -262,8 +287,8 @@ void aspects(const Show& show, Findings& out) {
 } // namespace
 
 void cross_check(const Show& show, Report& report) {
-  constexpr std::array checks{references, rectangles, drawing_orders,     windows, camera,
-                              off_axis,   listeners,  unused_projections, aspects};
+  constexpr std::array checks{references, rectangles, drawing_orders,     windows, camera, off_axis,
+                              grids,      listeners,  unused_projections, aspects};
   Findings findings;
   for (const auto& check : checks) check(show, findings);
   // Decided before anything is added: two findings about one value are both told.

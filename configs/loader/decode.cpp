@@ -43,6 +43,7 @@ private:
   void list(const Parameter& row, void* owner, const Json& value, const std::string& at);
   bool leaf(const Parameter& row, const Json& value, const std::string& at);
   bool number(const Parameter& row, const Json& value, const std::string& at);
+  bool grid(const Parameter& row, const Json& value, const std::string& at);
   bool text(const std::string& value, const std::string& at);
 
   bool refuse(Code code, const std::string& at, std::string expected, std::string found,
@@ -229,14 +230,36 @@ bool Decoder::leaf(const Parameter& row, const Json& value, const std::string& a
     for (std::size_t i = 0; i < 3; ++i) good &= number(row, value[i], at + '/' + std::to_string(i));
     return good;
   }
+  case Kind::grid:
+    return value.is_array() ? grid(row, value, at) : wrong_type();
   default:
     return false;
   }
 }
 
+/// Explains the first pair that is wrong, and no more: a grid that is wrong is so everywhere.
+bool Decoder::grid(const Parameter& row, const Json& value, const std::string& at) {
+  for (std::size_t y = 0; y < value.size(); ++y) {
+    const std::string line = at + '/' + std::to_string(y);
+    if (!value[y].is_array()) return refuse(Code::wrong_type, line, "an array of pairs", shown(value[y]));
+    for (std::size_t x = 0; x < value[y].size(); ++x) {
+      const Json& pair = value[y][x];
+      const auto good = [&](const Json& one) {
+        return one.is_number() && one.get<double>() >= row.range->min && one.get<double>() <= row.range->max;
+      };
+      if (pair.is_array() && pair.size() == 2 && good(pair[0]) && good(pair[1])) continue;
+      const std::string here = line + '/' + std::to_string(x);
+      if (!pair.is_array() || pair.size() != 2)
+        return refuse(Code::wrong_type, here, "a pair of numbers", shown(pair));
+      return number(row, pair[0], here + "/0") && number(row, pair[1], here + "/1");
+    }
+  }
+  return true;
+}
+
 bool Decoder::number(const Parameter& row, const Json& value, const std::string& at) {
-  Parameter one = row; // of a vector: one of its numbers
-  if (row.kind == Kind::vector3) one.kind = Kind::number;
+  Parameter one = row; // of a vector or grid: one of its numbers
+  if (row.kind == Kind::vector3 || row.kind == Kind::grid) one.kind = Kind::number;
   if (!value.is_number()) return refuse(Code::wrong_type, at, expectation(one), shown(value));
   const double number = value.get<double>();
   if (!std::isfinite(number)) return refuse(Code::out_of_range, at, expectation(one), shown(value));

@@ -36,6 +36,7 @@ std::string standard(const Parameter& row, const void* owner) {
   if (value.is_null()) return row.kind == Kind::integer_or_auto ? "`\"auto\"`" : "(absent)";
   if (value.is_number()) return code(plain(value.get<double>()));
   if (!value.is_array()) return code(value.dump());
+  if (row.kind == Kind::grid) return code(value.dump());
   std::string text;
   for (const Json& one : value) text.append(text.empty() ? "[" : ", ").append(plain(one.get<double>()));
   return code(text.append("]"));

@@ -74,6 +74,13 @@ Json Generator::leaf(const Parameter& row, void* owner) {
   case Kind::choice:
     schema["enum"] = row.choices;
     break;
+  case Kind::grid: {
+    Json item{{"type", "number"}};
+    limit(row, item);
+    const Json pair{{"type", "array"}, {"items", std::move(item)}, {"minItems", 2}, {"maxItems", 2}};
+    schema = {{"type", "array"}, {"items", {{"type", "array"}, {"items", pair}}}};
+    break;
+  }
   default: {
     Json item{{"type", "number"}};
     limit(row, item);

@@ -91,6 +91,9 @@ std::string expectation(const Parameter& row) {
   }
   case Kind::vector3:
     return "an array of three numbers" + (range.empty() ? range : ", each " + range);
+  case Kind::grid:
+    return "an array of rows, each an array of pairs of numbers" +
+           (range.empty() ? range : ", each " + range);
   case Kind::object:
     return "an object";
   case Kind::map:

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "configs/model/parameters.h"
 
@@ -91,6 +92,13 @@ public:
   Describe& vector3(std::string name, M T::*member, Unit unit, Range range, Cost cost, std::string doc) {
     number(std::move(name), member, unit, range, cost, std::move(doc));
     type_->rows.back().kind = Kind::vector3;
+    return *this;
+  }
+
+  Describe& grid(std::string name, std::vector<std::vector<glm::dvec2>> T::*member, Unit unit, Range range,
+                 Cost cost, std::string doc) {
+    number(std::move(name), member, unit, range, cost, std::move(doc));
+    type_->rows.back().kind = Kind::grid;
     return *this;
   }
 
@@ -186,6 +194,14 @@ private:
   static nlohmann::ordered_json encode(const glm::dvec3& v) {
     return nlohmann::ordered_json::array({v.x, v.y, v.z});
   }
+  static nlohmann::ordered_json encode(const std::vector<std::vector<glm::dvec2>>& grid) {
+    auto out = nlohmann::ordered_json::array();
+    for (const auto& row : grid) {
+      auto& line = out.emplace_back(nlohmann::ordered_json::array());
+      for (const glm::dvec2& pair : row) line.push_back(nlohmann::ordered_json::array({pair.x, pair.y}));
+    }
+    return out;
+  }
   template <class M>
   static nlohmann::ordered_json encode(const std::optional<M>& value) {
     return value ? encode(*value) : nlohmann::ordered_json();
@@ -200,6 +216,14 @@ private:
   }
   static void decode(const nlohmann::ordered_json& value, glm::dvec3& target) {
     target = {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+  }
+  static void decode(const nlohmann::ordered_json& value, std::vector<std::vector<glm::dvec2>>& target) {
+    target.clear();
+    for (const auto& line : value) {
+      auto& row = target.emplace_back();
+      row.reserve(line.size());
+      for (const auto& pair : line) row.emplace_back(pair[0].get<double>(), pair[1].get<double>());
+    }
   }
   template <class M>
   static void decode(const nlohmann::ordered_json& value, std::optional<M>& target) {

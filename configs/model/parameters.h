@@ -39,6 +39,7 @@ enum class Kind : std::uint8_t {
   text,
   choice,          ///< text, one of `choices`
   vector3,         ///< array of three numbers, each in `range`
+  grid,            ///< array of rows of pairs of numbers, each in `range`; empty: none
   integer_or_auto, ///< integer, or "auto" when absent
   object,          ///< a nested struct described by `type`
   map,             ///< object of named structs described by `type`

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <map>
 #include <numbers>
@@ -179,8 +180,53 @@ struct CubeCross {
   bool operator==(const CubeCross&) const = default;
 };
 
+/// Moves along the radius, most in the centre: a bulge (above 0) or a dent (below) of the whole picture.
+struct RadialZoom {
+  double strength = 0.5; ///< the centre is magnified 1 + strength times
+  bool operator==(const RadialZoom&) const = default;
+};
+
+/// Turns about the centre, less and less outwards.
+struct Swirl {
+  Angle angle{45.0}; ///< in the centre, counter-clockwise
+  bool operator==(const Swirl&) const = default;
+};
+
+/// A magnifier: what is within the radius, and nothing outside.
+struct Lens {
+  double strength = 0.5; ///< the centre is magnified 1 + strength times
+  bool operator==(const Lens&) const = default;
+};
+
+/// Rings of waves about the centre.
+struct Ripple {
+  double amplitude = 0.02, wavelength = 0.4; ///< in halves of the shorter side
+  bool operator==(const Ripple&) const = default;
+};
+
+/// A generated deformation of a camera texture; see renderer/projection/deformation.h.
+struct Deformation {
+  std::variant<RadialZoom, Swirl, Lens, Ripple> bend;
+  double center_s = 0.0, center_t = 0.0; ///< image coordinates
+  double radius = 0.7;                   ///< in halves of the shorter side
+  int order = 0;                         ///< they act in rising order
+  bool operator==(const Deformation&) const = default;
+};
+
+/// A perspective whose picture is bent by a grid: its vertices land beside where they stand.
+struct CameraTexture {
+  Angle horizontal_fov{75.0};
+  std::optional<Angle> vertical_fov; ///< absent: follows from the viewport so that pixels are square
+  int columns = 64, rows = 48;       ///< cells of the grid
+  /// By row from the top, rows + 1 of columns + 1: how far a vertex lands from where it stands, in image
+  /// coordinates (s right, t up, the picture from -1 to 1). Empty: nowhere else.
+  std::vector<std::vector<glm::dvec2>> offsets;
+  std::map<std::string, Deformation> deformations; ///< after the offsets
+  bool operator==(const CameraTexture&) const = default;
+};
+
 using Shape = std::variant<Perspective, Cylinder, Fisheye, Equirectangular, Stereographic, Orthographic,
-                           Mercator, Panini, CubeCross>;
+                           Mercator, Panini, CubeCross, CameraTexture>;
 
 struct Projection {
   Shape shape;

@@ -179,6 +179,63 @@ const Type& camera_type() {
   return type;
 }
 
+const Type& deformation_type() {
+  static const Type type =
+      Describe<Deformation>("deformation", "A generated deformation of a camera texture.")
+          .variant(
+              &Deformation::bend, true, Cost::rebuild,
+              {{"zoom", "Moves along the radius, most in the centre: a bulge of the whole picture.",
+                Describe<RadialZoom>("zoom", "")
+                    .number("strength", &RadialZoom::strength, Unit::none, Range{-0.95, 10}, Cost::rebuild,
+                            "The centre is magnified 1 + strength times; the picture folds above 2.24.")
+                    .share()},
+               {"swirl", "Turns about the centre, less and less outwards.",
+                Describe<Swirl>("swirl", "")
+                    .number("angle", &Swirl::angle, Unit::degree, Range{-3600, 3600}, Cost::rebuild,
+                            "Of the centre, counter-clockwise.")
+                    .share()},
+               {"lens", "A magnifier: bends what is within the radius, and nothing outside.",
+                Describe<Lens>("lens", "")
+                    .number("strength", &Lens::strength, Unit::none, Range{-0.95, 10}, Cost::rebuild,
+                            "The centre is magnified 1 + strength times; the picture folds above 1.4.")
+                    .share()},
+               {"ripple", "Rings of waves about the centre.",
+                Describe<Ripple>("ripple", "")
+                    .number("amplitude", &Ripple::amplitude, Unit::none, Range{-1, 1}, Cost::rebuild,
+                            "In halves of the shorter side; the picture folds above wavelength / 2π.")
+                    .number("wavelength", &Ripple::wavelength, Unit::none, Range{0.01, 100}, Cost::rebuild,
+                            "In halves of the shorter side.")
+                    .share()}})
+          .number("center_s", &Deformation::center_s, Unit::none, Range{-2, 2}, Cost::rebuild,
+                  "Its centre in the picture: -1 left, 1 right.")
+          .number("center_t", &Deformation::center_t, Unit::none, Range{-2, 2}, Cost::rebuild,
+                  "Its centre in the picture: -1 bottom, 1 top.")
+          .number("radius", &Deformation::radius, Unit::none, Range{0.01, 100}, Cost::rebuild,
+                  "In halves of the shorter side: where a lens ends, and the others are down to 37 %.")
+          .integer("order", &Deformation::order, Unit::none, {-1000, 1000}, Cost::rebuild,
+                   "Deformations act in rising order.")
+          .take();
+  return type;
+}
+
+std::shared_ptr<const Type> camera_texture_type() {
+  return Describe<CameraTexture>("camera_texture", "")
+      .number("horizontal_fov", &CameraTexture::horizontal_fov, Unit::degree, Range{0.1, 175}, Cost::rebuild,
+              "Field of view across, of the perspective that is bent.")
+      .number("vertical_fov", &CameraTexture::vertical_fov, Unit::degree, Range{0.1, 175}, Cost::rebuild,
+              "Field of view from bottom to top; absent: pixels are square.")
+      .integer("columns", &CameraTexture::columns, Unit::none, {1, 512}, Cost::rebuild,
+               "Cells of the grid across.")
+      .integer("rows", &CameraTexture::rows, Unit::none, {1, 512}, Cost::rebuild,
+               "Cells of the grid from top to bottom.")
+      .grid("offsets", &CameraTexture::offsets, Unit::none, {-4, 4}, Cost::rebuild,
+            "How far each vertex lands from where it stands, [right, up], the picture being 2 wide and high: "
+            "from the top, rows + 1 arrays of columns + 1 pairs.")
+      .map("deformations", &CameraTexture::deformations, deformation_type(), {0, 64}, Cost::rebuild,
+           "Generated deformations by name, after the offsets.")
+      .share();
+}
+
 const Type& projection_type() {
   static const Type type =
       Describe<Projection>("projection", "A single-centre map from image coordinates to directions.")
@@ -248,7 +305,10 @@ const Type& projection_type() {
                 "The six faces of a cube as a horizontal cross: left, front, right, back, with top and "
                 "bottom "
                 "at the front; nothing is shown beside them.",
-                Describe<CubeCross>("cube_cross", "").share()}})
+                Describe<CubeCross>("cube_cross", "").share()},
+               {"camera_texture",
+                "A perspective whose picture is bent by a grid of offsets, given or generated.",
+                camera_texture_type()}})
           .number("zoom", &Projection::zoom, Unit::factor, Range{0.05, 100}, Cost::rebuild,
                   "Magnification about the image centre: 2 shows half the field.")
           .vector3("off_axis", &Projection::off_axis, Unit::factor, Range{-0.95, 0.95}, Cost::rebuild,

@@ -16,6 +16,7 @@
 #include "renderer/passes/cubemap_pass.h"
 #include "renderer/passes/frame_block.h"
 #include "renderer/passes/gpu_pieces.h"
+#include "renderer/passes/lookup_pass.h"
 #include "renderer/passes/piece_area.h"
 #include "renderer/passes/scene_pass.h"
 #include "renderer/plan/camera.h"
@@ -48,25 +49,23 @@ Device query_device() {
 
 /// The programs that do not depend on the scene.
 struct FixedPrograms {
-  gl::Program lookup, downsample, picture;
+  gl::Program downsample, picture;
   passes::PieceArea::Programs area;
 };
 
 model::Result<FixedPrograms> build_fixed() {
   const gl::Stage fullscreen{GL_VERTEX_SHADER, "renderer/passes/fullscreen.vert.glsl"};
-  auto lookup = gl::build_program(
-      {"lookup", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/lookup.frag.glsl"}}, {}});
   auto downsample = gl::build_program(
       {"downsample", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/downsample.frag.glsl"}}, {}});
   auto picture = gl::build_program(
       {"picture", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/picture.frag.glsl"}}, {}});
   auto area = passes::PieceArea::make_programs();
   model::Problems problems;
-  for (const auto* result : {&lookup, &downsample, &picture})
+  for (const auto* result : {&downsample, &picture})
     if (!*result) problems.insert(problems.end(), result->error().begin(), result->error().end());
   if (!area) problems.insert(problems.end(), area.error().begin(), area.error().end());
   if (!problems.empty()) return tl::unexpected(problems);
-  return FixedPrograms{std::move(*lookup), std::move(*downsample), std::move(*picture), std::move(*area)};
+  return FixedPrograms{std::move(*downsample), std::move(*picture), std::move(*area)};
 }
 
 } // namespace
@@ -94,6 +93,7 @@ struct Renderer::Impl {
   FixedPrograms fixed;
   passes::ScenePrograms programs;
   passes::ScenePass pass{programs};
+  passes::LookupPass lookup;
   std::map<std::string, GpuView> gpu_views; ///< by output/viewport: each keeps its own list
   std::optional<passes::GpuPieces::Programs> gpu_programs;
   bool gpu_refused = false;           ///< the driver does not compile them
@@ -427,7 +427,7 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
       counts += draw_pieces(key, viewport, scene, scale);
       break;
     case model::Method::cubemap:
-      passes::draw_lookup(fixed.lookup.id(), empty_array.id(), viewport.map, *current->cubemap);
+      lookup.draw(viewport.map, *current->cubemap);
       break;
     case model::Method::automatic: // has been resolved
     case model::Method::reference:
@@ -468,8 +468,8 @@ FrameStatistics Renderer::draw(double time) {
     impl_->choice.record(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
-  model::Problems shader_problems = impl_->programs.take_problems();
-  impl_->problems.insert(impl_->problems.end(), shader_problems.begin(), shader_problems.end());
+  for (const model::Problems& refused : {impl_->programs.take_problems(), impl_->lookup.take_problems()})
+    impl_->problems.insert(impl_->problems.end(), refused.begin(), refused.end());
 
   statistics.revision = current.stage->revision;
   statistics.triangles = current.scene->scene().geometry.indices.size() / 3;

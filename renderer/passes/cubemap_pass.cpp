@@ -1,7 +1,6 @@
 #include "renderer/passes/cubemap_pass.h"
 
 #include <array>
-#include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 
 namespace cupola::passes {
@@ -69,29 +68,6 @@ DrawCounts draw_cubemap(ScenePass& pass, const FrameScene& scene, const plan::Cu
   glDisable(GL_SCISSOR_TEST);
   target.finish();
   return counts;
-}
-
-void set_map(const projection::Map& map) {
-  using projection::MapUniforms;
-  const MapUniforms values = projection::uniforms(map);
-  glUniform1i(MapUniforms::location_shape, values.shape);
-  glUniform4fv(MapUniforms::location_parameters, 1, glm::value_ptr(values.parameters));
-  glUniform1f(MapUniforms::location_zoom, values.zoom);
-  glUniform3fv(MapUniforms::location_off_axis, 1, glm::value_ptr(values.off_axis));
-  glUniformMatrix3fv(MapUniforms::location_orientation, 1, GL_FALSE, glm::value_ptr(values.orientation));
-}
-
-void draw_lookup(GLuint program, GLuint empty_array, const projection::Map& map,
-                 const CubemapTarget& cubemap) {
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
-  glDisable(GL_BLEND);
-  glUseProgram(program);
-  set_map(map);
-  glBindTextureUnit(0, cubemap.texture());
-  glBindSampler(0, 0);
-  glBindVertexArray(empty_array);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 } // namespace cupola::passes

@@ -1,11 +1,9 @@
-// The image-based method: the scene into the faces of a cubemap, then a lookup for each pixel of a viewport.
-// Render thread only.
+// The first half of the image-based method: the scene into the faces of a cubemap. Render thread only.
 #pragma once
 
 #include "renderer/passes/scene_pass.h"
 #include "renderer/passes/targets.h"
 #include "renderer/plan/plan.h"
-#include "renderer/projection/map.h"
 
 namespace cupola::passes {
 
@@ -20,13 +18,5 @@ namespace cupola::passes {
 /// pixel.
 DrawCounts draw_cubemap(ScenePass& pass, const FrameScene& scene, const plan::CubemapPlan& plan,
                         const CubemapTarget& target, const glm::vec3& background, float style_scale);
-
-/// Sets the uniforms of map.glsl in the program in use.
-void set_map(const projection::Map& map);
-
-/// Looks every pixel of the current GL viewport up. `program`: fullscreen.vert + lookup.frag. Pixels that the
-/// projection does not show stay as they are.
-void draw_lookup(GLuint program, GLuint empty_array, const projection::Map& map,
-                 const CubemapTarget& cubemap);
 
 } // namespace cupola::passes

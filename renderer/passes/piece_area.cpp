@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "renderer/gl/shader.h"
-#include "renderer/passes/cubemap_pass.h"
+#include "renderer/passes/lookup_pass.h"
 
 namespace cupola::passes {
 

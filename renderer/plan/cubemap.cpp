@@ -215,7 +215,9 @@ int matched_cubemap_size(const projection::Map& map, const PixelRect& rect) {
 CubemapPlan make_cubemap(const projection::Map& map, const PixelRect& rect, std::optional<int> size) {
   CubemapPlan plan;
   plan.size = size ? *size : std::clamp(matched_cubemap_size(map, rect), min_cubemap_size, max_cubemap_size);
-  Seen seen(map, rect, plan.size);
+  // A camera texture sees no more than the flat picture that it bends.
+  const projection::Map flat = projection::before_bending(map);
+  Seen seen(flat, rect, plan.size);
   seen.add_all();
   for (std::size_t i = 0; i < plan.faces.size(); ++i) plan.faces[i] = seen.face(i, plan.size);
   return plan;

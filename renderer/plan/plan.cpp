@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -96,6 +97,16 @@ private:
     return false;
   }
 
+  /// Folds are allowed; they are told once for each projection.
+  void check_folds(const std::string& name, const projection::Map& map) {
+    const auto fold = first_fold(map);
+    if (!fold || !folded_.insert(name).second) return;
+    report(Code::grid_folds, "/projections/" + name, "a grid whose triangles keep their sides",
+           fmt::format("{} {}, the first in the cell of column {} and row {}", fold->triangles,
+                       fold->narrow ? "folded or flat" : "folded over", fold->column, fold->row),
+           "Weaken the deformation, or enlarge its radius, unless it is meant.", Severity::warning);
+  }
+
   void add_output(const std::string& name, const model::Output& output) {
     OutputPlan made{name, output.width, output.height, {}};
     std::vector<std::pair<int, std::string>> sequence;
@@ -126,6 +137,7 @@ private:
     if (!check_size(pointer, made.rect)) return std::nullopt;
     made.map = projection::make_map(named->second, double(made.rect.width) / made.rect.height);
     if (!projection::inside(made.map)) return std::nullopt; // reported with the projection
+    check_folds(viewport.projection, made.map);
     if (made.method == model::Method::piecewise || made.method == model::Method::automatic)
       add_pieces(pointer, made);
     return made;
@@ -152,7 +164,10 @@ private:
   void add_pieces(const std::string& pointer, ViewportPlan& viewport) {
     const double wanted = show_.pieces.max_error;
     viewport.pieces = make_strips(viewport.map, viewport.rect, wanted);
-    if (!viewport.pieces) viewport.pieces = make_cells(viewport.map, viewport.rect, wanted);
+    if (std::holds_alternative<projection::CameraTextureMap>(viewport.map.shape))
+      viewport.pieces = make_camera_texture_pieces(viewport.map, viewport.rect);
+    else if (!viewport.pieces)
+      viewport.pieces = make_cells(viewport.map, viewport.rect, wanted);
     if (viewport.method == model::Method::automatic) {
       // The cubemap is there for what pieces cannot do.
       if (viewport.pieces && (too_many(*viewport.pieces) || viewport.pieces->pieces.empty()))
@@ -253,6 +268,7 @@ private:
   const model::Show& show_;
   Plan plan_;
   model::Problems problems_;
+  std::set<std::string> folded_; ///< projections whose folds have been told
 };
 
 } // namespace

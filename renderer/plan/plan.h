@@ -147,6 +147,22 @@ struct Planned {
 [[nodiscard]] std::optional<PieceSet> make_cells(const projection::Map& map, const PixelRect& rect,
                                                  double max_error);
 
+/// The pieces of a camera texture, which are exactly its triangles; those that cover nothing of the picture
+/// are left out. max_error is 0. Where the grid folds, triangles are clockwise on screen and pieces overlap:
+/// what is nearest wins there. fills is false where it is not certain. nullopt for other shapes, for an eye
+/// behind the picture, and where nothing is left.
+[[nodiscard]] std::optional<PieceSet> make_camera_texture_pieces(const projection::Map& map,
+                                                                 const PixelRect& rect);
+
+/// Triangles of a camera texture that are folded over, or so narrow that they cover nothing: the cell of the
+/// first, counted from the top left, whether that one is narrow, and how many there are.
+struct Fold {
+  int column = 0, row = 0;
+  bool narrow = false;
+  int triangles = 0;
+};
+[[nodiscard]] std::optional<Fold> first_fold(const projection::Map& map);
+
 /// Fills pieces, groups and the order of triangles from corners, triangles and shown: a tree over the
 /// directions of the pieces.
 void finish_triangles(PieceSet& set, const PixelRect& rect);

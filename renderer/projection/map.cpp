@@ -51,7 +51,10 @@ ShapeMap make_shape(const model::Shape& shape, double aspect) {
                                   p.vertical_fov ? std::tan(p.vertical_fov->radians() / 2) : across / aspect,
                                   p.distance};
                },
-               [](const model::CubeCross&) -> ShapeMap { return CubeCrossMap{}; }},
+               [](const model::CubeCross&) -> ShapeMap { return CubeCrossMap{}; },
+               [&](const model::CameraTexture& texture) -> ShapeMap {
+                 return make_camera_texture(texture, aspect);
+               }},
       shape);
 }
 
@@ -85,7 +88,8 @@ std::optional<glm::dvec3> shape_ray(const Map& map, glm::dvec2 st) {
                [&](const OrthographicMap& shape) { return orthographic_ray(shape, st, map.zoom); },
                [&](const MercatorMap& shape) { return mercator_ray(shape, st, map.zoom); },
                [&](const PaniniMap& shape) { return panini_ray(shape, st, map.zoom); },
-               [&](const CubeCrossMap& shape) { return cube_cross_ray(shape, st, map.zoom); }},
+               [&](const CubeCrossMap& shape) { return cube_cross_ray(shape, st, map.zoom); },
+               [&](const CameraTextureMap& shape) { return camera_texture_ray(shape, st, map.zoom); }},
       map.shape);
 }
 
@@ -99,7 +103,8 @@ std::optional<glm::dvec3> shape_beyond(const Map& map, glm::dvec2 st, glm::dvec2
                [&](const OrthographicMap& shape) { return orthographic_beyond(shape, st, map.zoom); },
                [&](const MercatorMap& shape) { return mercator_beyond(shape, st, map.zoom); },
                [&](const PaniniMap& shape) { return panini_ray(shape, st, map.zoom); },
-               [&](const CubeCrossMap& shape) { return cube_cross_beyond(shape, st, map.zoom, inside); }},
+               [&](const CubeCrossMap& shape) { return cube_cross_beyond(shape, st, map.zoom, inside); },
+               [&](const CameraTextureMap& shape) { return camera_texture_ray(shape, st, map.zoom); }},
       map.shape);
 }
 
@@ -125,7 +130,10 @@ std::optional<glm::dvec2> shape_point(const Map& map, const glm::dvec3& directio
           [&](const OrthographicMap& shape) { return orthographic_point(shape, eye, direction, map.zoom); },
           [&](const MercatorMap& shape) { return mercator_point(shape, eye, direction, map.zoom); },
           [&](const PaniniMap& shape) { return panini_point(shape, eye, direction, map.zoom); },
-          [&](const CubeCrossMap& shape) { return cube_cross_point(shape, eye, direction, map.zoom); }},
+          [&](const CubeCrossMap& shape) { return cube_cross_point(shape, eye, direction, map.zoom); },
+          [&](const CameraTextureMap& shape) {
+            return camera_texture_point(shape, eye, direction, map.zoom);
+          }},
       map.shape);
 }
 
@@ -135,7 +143,8 @@ double farthest(const Map& map) {
   return std::visit(
       [&](const auto& shape) {
         using Shape = std::decay_t<decltype(shape)>;
-        if constexpr (std::is_same_v<Shape, PerspectiveMap> || std::is_same_v<Shape, PaniniMap>)
+        if constexpr (std::is_same_v<Shape, PerspectiveMap> || std::is_same_v<Shape, PaniniMap> ||
+                      std::is_same_v<Shape, CameraTextureMap>)
           return 1.0 + eye.z;
         else if constexpr (std::is_same_v<Shape, CylinderMap>)
           return 1.0 + std::hypot(eye.x, eye.z);
@@ -177,6 +186,7 @@ glm::dmat3 rotation(const model::Orientation& orientation) {
 bool inside(const Map& map) {
   const glm::dvec3& eye = map.off_axis;
   return std::visit(Overload{[&](const PerspectiveMap&) { return eye.z > -1.0; },
+                             [&](const CameraTextureMap&) { return eye.z > -1.0; },
                              [&](const CylinderMap&) { return eye.x * eye.x + eye.z * eye.z < 1.0; },
                              [&](const PaniniMap& shape) { return panini_inside(shape, eye); },
                              [&](const CubeCrossMap&) {
@@ -238,9 +248,16 @@ double matched_density(const Map& map, glm::dvec2 size_px) {
                [&](const OrthographicMap& shape) { return orthographic_density(shape, size_px); },
                [&](const MercatorMap& shape) { return mercator_density(shape, size_px); },
                [&](const PaniniMap& shape) { return panini_density(shape, size_px); },
-               [&](const CubeCrossMap& shape) { return cube_cross_density(shape, size_px); }},
+               [&](const CubeCrossMap& shape) { return cube_cross_density(shape, size_px); },
+               [&](const CameraTextureMap& shape) { return camera_texture_density(shape, size_px); }},
       map.shape);
   return own * map.zoom * farthest(map);
+}
+
+Map before_bending(const Map& map) {
+  const auto* texture = std::get_if<CameraTextureMap>(&map.shape);
+  if (!texture) return map;
+  return {texture->base, 1.0, map.off_axis, map.orientation};
 }
 
 MapUniforms uniforms(const Map& map) {
@@ -255,7 +272,10 @@ MapUniforms uniforms(const Map& map) {
                [](const OrthographicMap& s) { return glm::dvec4(s.sin_half, s.scale_s, s.scale_t, 0.0); },
                [](const MercatorMap& s) { return glm::dvec4(s.half_h, s.half_up, 0.0, 0.0); },
                [](const PaniniMap& s) { return glm::dvec4(s.half_x, s.half_y, s.distance, 0.0); },
-               [](const CubeCrossMap&) { return glm::dvec4(0.0); }},
+               [](const CubeCrossMap&) { return glm::dvec4(0.0); },
+               [](const CameraTextureMap& s) {
+                 return glm::dvec4(s.base.tan_half_h, s.base.tan_half_v, 0.0, 0.0);
+               }},
       map.shape));
   out.zoom = static_cast<float>(map.zoom);
   out.off_axis = glm::vec3(map.off_axis);

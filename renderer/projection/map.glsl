@@ -9,6 +9,7 @@
 #include "renderer/projection/mercator.glsl"
 #include "renderer/projection/panini.glsl"
 #include "renderer/projection/cube_cross.glsl"
+#include "renderer/projection/camera_texture.glsl"
 
 #ifdef MAP_SHAPE
 const int map_shape = MAP_SHAPE;
@@ -29,7 +30,8 @@ bool shape_ray(vec2 st, out vec3 ray) {
   if (map_shape == 5) return orthographic_ray(map_parameters, st, map_zoom, ray);
   if (map_shape == 6) return mercator_ray(map_parameters, st, map_zoom, ray);
   if (map_shape == 7) return panini_ray(map_parameters, st, map_zoom, ray);
-  return cube_cross_ray(map_parameters, st, map_zoom, ray);
+  if (map_shape == 8) return cube_cross_ray(map_parameters, st, map_zoom, ray);
+  return camera_texture_ray(map_parameters, st, ray);
 }
 
 bool shape_point(vec3 direction, out vec2 st) {
@@ -41,7 +43,8 @@ bool shape_point(vec3 direction, out vec2 st) {
   if (map_shape == 5) return orthographic_point(map_parameters, map_off_axis, direction, map_zoom, st);
   if (map_shape == 6) return mercator_point(map_parameters, map_off_axis, direction, map_zoom, st);
   if (map_shape == 7) return panini_point(map_parameters, map_off_axis, direction, map_zoom, st);
-  return cube_cross_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  if (map_shape == 8) return cube_cross_point(map_parameters, map_off_axis, direction, map_zoom, st);
+  return camera_texture_point(map_parameters, map_off_axis, direction, st);
 }
 
 // twin of map.cpp: ray. False where the image point shows nothing; direction is then (0, 0, -1).

@@ -18,10 +18,12 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 #include "configs/model/show.h"
+#include "renderer/projection/camera_texture.h"
 #include "renderer/projection/cube_cross.h"
 #include "renderer/projection/cylinder.h"
 #include "renderer/projection/equirectangular.h"
@@ -35,7 +37,17 @@
 namespace cupola::projection {
 
 using ShapeMap = std::variant<PerspectiveMap, CylinderMap, FisheyeMap, EquirectangularMap, StereographicMap,
-                              OrthographicMap, MercatorMap, PaniniMap, CubeCrossMap>;
+                              OrthographicMap, MercatorMap, PaniniMap, CubeCrossMap, CameraTextureMap>;
+
+/// The place of a shape in ShapeMap: its number in the shaders.
+template <class Shape, class... Shapes>
+constexpr std::size_t index_in(const std::variant<Shapes...>*) {
+  std::size_t index = 0;
+  static_cast<void>(((std::is_same_v<Shape, Shapes> || (++index, false)) || ...));
+  return index;
+}
+template <class Shape>
+inline constexpr std::size_t index_of = index_in<Shape>(static_cast<const ShapeMap*>(nullptr));
 
 struct Map {
   ShapeMap shape;
@@ -62,9 +74,9 @@ struct Map {
 /// ray() continued beyond the limits of what is shown, for corners of pieces that hang over them: as far as
 /// it is smooth and one-to-one about the point. Outside a fisheye's circle to half a turn from its axis, past
 /// the half turn of a cylinder or of longitudes (directions then come again); not over a pole, nor over the
-/// right angle where an orthographic fisheye ends. Wherever ray() has a direction this is the same. Where the
-/// map has breaks() it is the continuation of the face that `inside` lies on, an image point that shows
-/// something, over all others; elsewhere `inside` does not matter.
+/// right angle where an orthographic fisheye ends; a camera texture ends with its grid. Wherever ray() has a
+/// direction this is the same. Where the map has breaks() it is the continuation of the face that `inside`
+/// lies on, an image point that shows something, over all others; elsewhere `inside` does not matter.
 [[nodiscard]] std::optional<glm::dvec3> beyond(const Map& map, glm::dvec2 st, glm::dvec2 inside);
 
 /// Values of s and of t within (-1,1), rising, across which the map is not smooth: faces that meet there.
@@ -83,12 +95,16 @@ struct Breaks {
 
 /// Pixels per radian along the lines on which the shape counts its angles in equal steps: along the horizon
 /// of a cylinder, a radius of a fisheye, the equator of an equirectangular picture or of Mercator's. Where it
-/// has none: at the centre of a perspective, an orthographic fisheye and a face of a cross, half way to the
-/// edge of a stereographic fisheye and of Panini's picture, which grow outwards. The greater of both
-/// directions, and where the wall is farthest from an eye off its centre. This is the density that a cubemap
-/// is matched to: elsewhere (towards a pole, a rim, a tall picture's top) pixels crowd without limit, and
-/// hold no more detail for it.
+/// has none: at the centre of a perspective, also of one that is bent, an orthographic fisheye and a face of
+/// a cross, half way to the edge of a stereographic fisheye and of Panini's picture, which grow outwards. The
+/// greater of both directions, and where the wall is farthest from an eye off its centre. This is the density
+/// that a cubemap is matched to: elsewhere (towards a pole, a rim, a tall picture's top) pixels crowd without
+/// limit, and hold no more detail for it.
 [[nodiscard]] double matched_density(const Map& map, glm::dvec2 size_px);
+
+/// The perspective whose picture a camera texture bends, whole and without zoom: all that it may show. Any
+/// other map as it is.
+[[nodiscard]] Map before_bending(const Map& map);
 
 /// A map as uniforms of map.glsl, which fixes their locations.
 struct MapUniforms {

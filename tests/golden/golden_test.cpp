@@ -48,6 +48,18 @@ std::vector<Case> cases() {
   leaning.projection.off_axis = {0.3, 0.1, -0.2};
   leaning.projection.orientation = {{-30.0}, {10.0}, {-8.0}};
   all.push_back(leaning);
+  model::CameraTexture texture;
+  texture.columns = texture.rows = 12;
+  texture.deformations["bulge"] = {model::RadialZoom{0.6}, 0.0, 0.0, 0.9, 0};
+  texture.deformations["turn"] = {model::Swirl{{60.0}}, 0.0, 0.0, 0.8, 1};
+  all.push_back({"camera-texture", shaped(texture), 320, 240, true, 24.0});
+  texture.deformations = {{"rings", {model::Ripple{0.12, 0.5}, 0.2, -0.1, 0.8, 0}}};
+  texture.columns = texture.rows = 40;
+  Case folded{"camera-texture-folded", shaped(texture), 320, 240, false, 24.0};
+  folded.projection.zoom = 1.2;
+  folded.projection.off_axis = {0.2, 0.1, -0.2};
+  folded.projection.orientation = {{15.0}, {5.0}, {-8.0}};
+  all.push_back(folded);
   all.push_back({"cube-cross", shaped(model::CubeCross{}), 400, 300, false, 24.0});
   return all;
 }

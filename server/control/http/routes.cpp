@@ -113,6 +113,8 @@ std::string kind_name(model::Kind kind) {
     return "choice";
   case model::Kind::vector3:
     return "vector3";
+  case model::Kind::grid:
+    return "grid";
   case model::Kind::integer_or_auto:
     return "integer or auto";
   default:

@@ -101,6 +101,7 @@ model::Result<Json> by_kind(Kind kind, const OscMessage& message) {
     return wrong(message, "the address of a single parameter", "the address of several");
   if (message.arguments.size() == 1 && message.arguments.front().type == 'N') return Json();
   if (kind == Kind::vector3) return vector3(message);
+  if (kind == Kind::grid) return wrong(message, "a parameter that fits a message", "a grid");
   if (message.arguments.size() != 1) return wrong(message, "one value");
   const OscArgument& only = message.arguments.front();
   switch (kind) {

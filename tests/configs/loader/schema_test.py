@@ -25,6 +25,7 @@ BEYOND_A_SCHEMA = {
     "CFG-204": "a vector that must not be zero, nor parallel to another",
     "CFG-205": "a sum of two values",
     "CFG-206": "equality of two values",
+    "CFG-213": "a number of entries that another value gives",
 }
 # CFG-104 in most cases is a range of one value, but for:
 BEYOND_BY_FILE = {"off_axis_outside.json": "the length of a vector",

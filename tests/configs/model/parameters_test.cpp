@@ -15,14 +15,25 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
+CameraTexture bent(std::size_t number) {
+  CameraTexture texture;
+  texture.offsets = {{{0.1, 0.2}, {0, 0}}, {{0, 0}, {0, 0}}};
+  Deformation deformation;
+  if (number / 10 % 4 == 1) deformation.bend = Swirl{};
+  if (number / 10 % 4 == 2) deformation.bend = Lens{};
+  if (number / 10 % 4 == 3) deformation.bend = Ripple{};
+  texture.deformations["d"] = deformation;
+  return texture;
+}
+
 /// A show with at least one entry everywhere, its alternatives chosen by number.
 Show furnished(std::size_t number) {
   Show show;
   show.scene.content = std::array<Content, 3>{City{}, Room{}, Gltf{"a.glb", "", 1.0}}[number % 3];
   show.camera.path = {{0.0, {1, 2, 3}, {}, {}}, {2.5, {4, 5, 6}, {}, glm::dvec3(1, 0, 0)}};
-  show.projections["wall"].shape =
-      std::array<Shape, 9>{Perspective{},  Cylinder{}, Fisheye{}, Equirectangular{}, Stereographic{},
-                           Orthographic{}, Mercator{}, Panini{},  CubeCross{}}[number % 9];
+  show.projections["wall"].shape = std::array<Shape, 10>{
+      Perspective{},  Cylinder{}, Fisheye{}, Equirectangular{}, Stereographic{},
+      Orthographic{}, Mercator{}, Panini{},  CubeCross{},       bent(number)}[number % 10];
   show.projections["b.2"].shape = Fisheye{};
   Output output;
   output.sink =
@@ -32,7 +43,7 @@ Show furnished(std::size_t number) {
   show.outputs["main"] = output;
   return show;
 }
-constexpr std::size_t furnishings = 36;
+constexpr std::size_t furnishings = 60;
 
 /// Another valid value than `value`.
 Json another(const Parameter& row, const Json& value) {
@@ -51,6 +62,8 @@ Json another(const Parameter& row, const Json& value) {
     return value.get<std::string>() + "x";
   case Kind::choice:
     return row.choices[value == row.choices.front() ? 1 : 0];
+  case Kind::grid:
+    return Json::array({Json::array({Json::array({number(Json()), row.range->max})})});
   case Kind::vector3:
     return Json::array({number(value.is_null() ? Json() : value[0]), row.range->max, row.range->min});
   default:
@@ -97,7 +110,7 @@ TEST_CASE("every row says what it is") {
       if (row.range) CHECK(row.range->min <= row.range->max);
       if (row.kind == Kind::choice) CHECK(row.choices.size() >= 2);
       if (row.kind == Kind::map || row.kind == Kind::list) REQUIRE(row.range);
-      if (row.kind == Kind::vector3) REQUIRE(row.range);
+      if (row.kind == Kind::vector3 || row.kind == Kind::grid) REQUIRE(row.range);
       if (!is_leaf(row)) {
         REQUIRE(row.type);
         return;
@@ -177,6 +190,8 @@ TEST_CASE("leaf paths are the leaves and kinds, each once, each found") {
     });
     wanted.insert(
         {"/scene/content/kind", "/projections/wall/kind", "/projections/b.2/kind", "/outputs/main/kind"});
+    if (std::holds_alternative<CameraTexture>(show.projections["wall"].shape))
+      wanted.insert("/projections/wall/deformations/d/kind");
     const auto paths = leaf_paths(show);
     CHECK(std::set<std::string>(paths.begin(), paths.end()) == wanted);
     CHECK(paths.size() == wanted.size());

@@ -145,7 +145,7 @@ TEST_CASE("nonsense in, nothing out") {
        {model::Shape(model::Perspective{}), model::Shape(model::Cylinder{}), model::Shape(model::Fisheye{}),
         model::Shape(model::Equirectangular{}), model::Shape(model::Stereographic{}),
         model::Shape(model::Orthographic{}), model::Shape(model::Mercator{}), model::Shape(model::Panini{}),
-        model::Shape(model::CubeCross{})}) {
+        model::Shape(model::CubeCross{}), model::Shape(model::CameraTexture{})}) {
     model::Projection projection;
     projection.shape = shape;
     const Map map = make_map(projection, 1.5);

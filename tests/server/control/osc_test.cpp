@@ -169,6 +169,27 @@ TEST_CASE("every parameter can be read, and set to what was read") {
   }
 }
 
+TEST_CASE("a camera texture: its deformations by messages, its grid not") {
+  const auto live = test::small_state();
+  REQUIRE(test::set(*live, "/projections/wall",
+                    {{"kind", "camera_texture"},
+                     {"columns", 1},
+                     {"rows", 1},
+                     {"offsets", Json::parse("[[[0, 0], [0, 0]], [[0, 0], [0.1, 0]]]")},
+                     {"deformations", {{"turn", {{"kind", "swirl"}}}}}}));
+  const auto edit = to_edit(*live->current(), {"/projections/wall/deformations/turn/angle", {real(12.5)}});
+  REQUIRE(edit);
+  REQUIRE(test::set(*live, edit->path, edit->value));
+  const auto& shape = live->current()->show->projections.at("wall").shape;
+  const auto& turn = std::get<model::CameraTexture>(shape).deformations.at("turn");
+  CHECK(std::get<model::Swirl>(turn.bend).angle.degrees == 12.5);
+  const auto refused = to_edit(*live->current(), {"/projections/wall/offsets", {real(0.1)}});
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error()[0].found == "a grid");
+  CHECK_FALSE(to_reply(*live->current(), "/projections/wall/offsets"));
+  CHECK_FALSE(test::set(*live, "/projections/wall/offsets/0/0", Json::array({0.2, 0}))); // as a whole
+}
+
 TEST_CASE("questions about what has no single value") {
   const auto live = test::small_state();
   CHECK(to_reply(*live->current(), "/projections").error()[0].code == Code::wrong_type);
