@@ -125,7 +125,7 @@ public:
     out_.vertices.clear();
     out_.indices.clear();
     out_.portions.clear();
-    out_.pairs = 0;
+    out_.pairs = out_.hidden = 0;
   }
 
   void item(const DrawItem& item) {
@@ -296,7 +296,10 @@ private:
     }
     if (farthest < view_.near) return;
     ++out_.pairs;
-    if (occlusion_.hides(number, nearest)) return;
+    if (occlusion_.hides(number, nearest)) {
+      ++out_.hidden;
+      return;
+    }
     std::array<std::uint32_t, 6> index;
     for (int i = 0; i < polygon.count; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -329,7 +332,10 @@ private:
     }
     if (farthest < view_.near) return;
     ++out_.pairs;
-    if (occlusion_.hides(number, nearest)) return;
+    if (occlusion_.hides(number, nearest)) {
+      ++out_.hidden;
+      return;
+    }
     if (t.opaque && nearest >= view_.near) occlusion_.cover(number, farthest * (1.0f + 1e-5f));
     std::array<std::uint32_t, 3> index;
     for (std::size_t i = 0; i < 3; ++i) {

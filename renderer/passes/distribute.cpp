@@ -38,7 +38,7 @@ public:
     out_.vertices.clear();
     out_.indices.clear();
     out_.portions.clear();
-    out_.pairs = 0;
+    out_.pairs = out_.hidden = 0;
   }
 
   void item(const DrawItem& item) {

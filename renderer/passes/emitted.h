@@ -37,7 +37,8 @@ struct EmittedBatch {
   std::vector<EmittedVertex> vertices;
   std::vector<std::uint32_t> indices;
   std::vector<EmittedPortion> portions; ///< by run, then by group
-  std::uint64_t pairs = 0;              ///< (triangle, strip)
+  std::uint64_t pairs = 0;              ///< (triangle, piece), found
+  std::uint64_t hidden = 0;             ///< of them, left out behind an opaque triangle
 };
 
 /// Geometry as it is this frame: moving vertices come from the pose, blended triangles stand in today's

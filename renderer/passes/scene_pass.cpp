@@ -254,7 +254,7 @@ DrawCounts ScenePass::draw_batches(const FrameScene& scene, const std::vector<Em
   const std::vector<EmittedDraw> draws = arrange(batches, moves);
   if (draws.empty()) return counts;
   const std::size_t indices = draws.back().first_index + draws.back().index_count;
-  for (const EmittedBatch& batch : batches) counts.pairs += batch.pairs;
+  for (const EmittedBatch& batch : batches) counts.pairs += batch.pairs - batch.hidden;
   counts.triangles = indices / 3;
 
   const std::vector<std::size_t> starts = upload_vertices(batches);

@@ -33,7 +33,7 @@ struct FrameScene {
 /// Work done, for statistics.
 struct DrawCounts {
   std::uint64_t triangles = 0; ///< sent to the rasteriser
-  std::uint64_t pairs = 0;     ///< (triangle, piece) pairs of the piecewise method
+  std::uint64_t pairs = 0;     ///< (triangle, piece) pairs of the piecewise method that are drawn
   std::uint64_t bytes = 0;     ///< of buffers that the engine keeps
   DrawCounts& operator+=(const DrawCounts& other) {
     triangles += other.triangles;
