@@ -33,14 +33,15 @@ model::Result<OfflineRenderer> make_offline_renderer(frame::RendererOptions opti
 
 model::Result<std::shared_ptr<const frame::Stage>> make_stage(const model::Show& show,
                                                               const std::filesystem::path& folder,
-                                                              std::shared_ptr<const content::Scene> scene) {
+                                                              std::shared_ptr<const content::Scene> scene,
+                                                              Warnings warnings) {
   auto planned = plan::make_plan(show);
   if (!planned) return tl::unexpected(planned.error());
-  print_problems(planned->warnings);
+  if (warnings == Warnings::printed) print_problems(planned->warnings);
   if (!scene) {
     auto loaded = content::load_scene(show.scene.content, folder);
     if (!loaded) return tl::unexpected(loaded.error());
-    print_problems(loaded->warnings);
+    if (warnings == Warnings::printed) print_problems(loaded->warnings);
     scene = loaded->scene;
   }
   auto stage = std::make_shared<frame::Stage>();

@@ -1,6 +1,7 @@
 // Shows without a daemon: loaded, planned and drawn in this process, without a window.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -22,10 +23,13 @@ struct OfflineRenderer {
 /// `options`: offline is set.
 [[nodiscard]] model::Result<OfflineRenderer> make_offline_renderer(frame::RendererOptions options = {});
 
+/// Whether make_stage() prints the warnings of the plan and the scene.
+enum class Warnings : std::uint8_t { printed, dropped };
+
 /// Plans the show and loads its scene, or takes `scene` over. `folder`: of relative paths in the show.
 [[nodiscard]] model::Result<std::shared_ptr<const frame::Stage>>
 make_stage(const model::Show& show, const std::filesystem::path& folder,
-           std::shared_ptr<const content::Scene> scene = nullptr);
+           std::shared_ptr<const content::Scene> scene = nullptr, Warnings warnings = Warnings::printed);
 
 /// The picture as bytes, rows from the top. With the context current.
 [[nodiscard]] outputs::ByteImage read_picture(const frame::Picture& picture);

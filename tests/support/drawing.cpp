@@ -36,7 +36,7 @@ Shot draw(const model::Show& show, double time) {
   static model::Content last_content;
   static std::shared_ptr<const content::Scene> last_scene;
   if (!(last_content == show.scene.content)) last_scene = nullptr;
-  auto stage = cli::make_stage(show, ".", last_scene);
+  auto stage = cli::make_stage(show, ".", last_scene, cli::Warnings::dropped);
   if (!stage) {
     cli::print_problems(stage.error());
     FAIL("the show cannot be drawn");
