@@ -47,6 +47,11 @@ struct Named {
 
 /// Every kind, and what is hard about it: rims, poles, seams, faces that meet.
 std::vector<Named> projections() {
+  model::CameraTexture bent;
+  bent.columns = 37;
+  bent.rows = 23;
+  bent.deformations["zoom"] = {model::RadialZoom{0.5}, 0.1, -0.2, 1.2, 0};
+  bent.deformations["swirl"] = {model::Swirl{{40.0}}, 0.0, 0.0, 1.0, 1};
   return {{"cylinder 360", model::Cylinder{{360.0}, {134.0}}},
           {"cylinder 220", model::Cylinder{{220.0}, {100.0}}},
           {"perspective", model::Perspective{{90.0}, std::nullopt}},
@@ -60,7 +65,8 @@ std::vector<Named> projections() {
           {"orthographic", model::Orthographic{{180.0}}},
           {"mercator", model::Mercator{{360.0}, {150.0}}},
           {"panini", model::Panini{}},
-          {"cube cross", model::CubeCross{}}};
+          {"cube cross", model::CubeCross{}},
+          {"camera texture", bent}};
 }
 
 model::Show room_show(const Named& named, model::Method method, int samples) {
