@@ -179,7 +179,8 @@ private:
     t.back = facing >= 0.0f;
     if (t.back && !material.double_sided) return;
     for (std::size_t i = 0; i < 3; ++i) t.view[i] = view_.view_from_world * t.offset[i];
-    for (std::size_t i = 0; i < 3; ++i) t.edges[i] = glm::cross(t.view[(i + 1) % 3], t.view[(i + 2) % 3]);
+    for (std::size_t i = 0; i < 3; ++i) // by the difference: small triangles far away keep their digits
+      t.edges[i] = glm::cross(t.view[(i + 1) % 3], t.view[(i + 2) % 3] - t.view[(i + 1) % 3]);
     t.determinant = glm::dot(t.edges[0], t.view[0]);
     if (t.determinant == 0.0f) return; // through the eye: seen edge on
     if (t.determinant < 0.0f) {
