@@ -120,7 +120,7 @@ Comparison compare(const Pixels& got, const Pixels& wanted, const CompareOptions
       static_cast<double>(squares) / (3.0 * static_cast<double>(std::max<std::size_t>(result.compared, 1)));
   result.psnr_db =
       squares == 0 ? std::numeric_limits<double>::infinity() : 10.0 * std::log10(255.0 * 255.0 / mean);
-  result.ssim = structural_similarity(got, wanted, options.mask);
+  if (options.ssim) result.ssim = structural_similarity(got, wanted, options.mask);
   return result;
 }
 

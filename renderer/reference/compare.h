@@ -17,6 +17,7 @@ struct Pixels {
 struct CompareOptions {
   bool mask = false; ///< pixels where `wanted` has alpha 0 are left out: outside a fisheye's circle
   int threshold = 0; ///< a pixel is "beyond" when a channel differs by more
+  bool ssim = true;  ///< false: left out, which is most of the work
 };
 
 struct Comparison {

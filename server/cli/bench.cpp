@@ -68,16 +68,26 @@ void add_bench(CLI::App& app, ExitCode& exit_code) {
   bench->require_subcommand(1);
   struct Options {
     bool json = false, quick = false;
+    std::string pictures;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* table1 = bench->add_subcommand("table1", "The 360° cylinder of Lorenz & Döllner, table 1.");
-  table1->add_flag("--json", options->json, "One JSON object on standard output");
-  table1->add_flag("--quick", options->quick, "Few frames, to see that it works; the figures mean little");
-  table1->callback([options, &exit_code] { exit_code = bench_table1(options->json, options->quick); });
-  CLI::App* fisheye = bench->add_subcommand("fisheye", "Fisheye of 180°: pieces against the cubemap.");
-  fisheye->add_flag("--json", options->json, "One JSON object on standard output");
-  fisheye->add_flag("--quick", options->quick, "Few frames, to see that it works; the figures mean little");
-  fisheye->callback([options, &exit_code] { exit_code = bench_fisheye(options->json, options->quick); });
+  const auto add = [&](const char* name, const char* words, auto run) {
+    CLI::App* command = bench->add_subcommand(name, words);
+    command->add_flag("--json", options->json, "One JSON object on standard output");
+    command->add_flag("--quick", options->quick, "Few frames, to see that it works; the figures mean little");
+    command->callback([options, run, &exit_code] { exit_code = run(*options); });
+    return command;
+  };
+  add("table1", "The 360° cylinder of Lorenz & Döllner, table 1.",
+      [](const Options& o) { return bench_table1(o.json, o.quick); });
+  add("fisheye", "Fisheye of 180°: pieces against the cubemap.",
+      [](const Options& o) { return bench_fisheye(o.json, o.quick); });
+  add("quality", "How near both methods come to the picture by rays.",
+      [](const Options& o) {
+        return bench_quality({o.json, o.quick, o.pictures});
+      })
+      ->add_option("--pictures", options->pictures, "Close-ups go to this folder")
+      ->type_name("DIR");
 }
 
 } // namespace cupola::cli

@@ -21,4 +21,12 @@ void print_report(const BenchReport& report, bool as_json);
 int bench_table1(bool as_json, bool quick);
 int bench_fisheye(bool as_json, bool quick);
 
+struct QualityOptions {
+  bool json = false, quick = false;
+  std::string pictures; ///< folder for close-ups; "": none
+};
+/// Both methods against rays: at matched density, at equal time, against any cubemap. Progress on standard
+/// error.
+int bench_quality(const QualityOptions& options);
+
 } // namespace cupola::cli

@@ -20,6 +20,10 @@ struct Timing {
 /// under-report.
 [[nodiscard]] Timing time_frames(frame::Renderer& renderer, double duration, int poses, int repeats);
 
+/// The least time of `repeats` frames at `time` seconds, to glFinish: on a busy machine the figure that
+/// others disturb least.
+[[nodiscard]] double quickest_frame(frame::Renderer& renderer, int repeats, double time);
+
 /// To a multiple of `step`, as figures are reported.
 [[nodiscard]] double rounded(double value, double step);
 
