@@ -80,7 +80,9 @@ void add_bench(CLI::App& app, ExitCode& exit_code) {
   };
   add("table1", "The 360° cylinder of Lorenz & Döllner, table 1.",
       [](const Options& o) { return bench_table1(o.json, o.quick); });
-  add("fisheye", "Fisheye of 180°: pieces against the cubemap.",
+  add("table2", "Their camera textures over a perspective, table 2.",
+      [](const Options& o) { return bench_table2(o.json, o.quick); });
+  add("fisheye", "A dome of 180°: pieces, cubemap and auto, small and large cities.",
       [](const Options& o) { return bench_fisheye(o.json, o.quick); });
   add("quality", "How near both methods come to the picture by rays.",
       [](const Options& o) {
