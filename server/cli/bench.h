@@ -19,6 +19,12 @@ void print_report(const BenchReport& report, bool as_json);
 /// Table 1 of Lorenz & Döllner (2009): plain perspective, cubemap and piecewise on the 360° cylinder, in one
 /// process. Returns an exit code.
 int bench_table1(bool as_json, bool quick);
+
+/// Table 2: a camera texture over a perspective, by pieces and by warping one picture.
+int bench_table2(bool as_json, bool quick);
+
+/// A fisheye of 180°, 2048² and 4096², cities of 35 thousand to 3.5 million triangles: pieces, cubemaps about
+/// the matched size, and method auto.
 int bench_fisheye(bool as_json, bool quick);
 
 struct QualityOptions {
