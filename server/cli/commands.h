@@ -15,6 +15,7 @@ inline constexpr ExitCode exit_done = 0, exit_no = 1, exit_unusable = 2;
 void add_validate(CLI::App& app, ExitCode& exit_code);
 void add_compare(CLI::App& app, ExitCode& exit_code);
 void add_render(CLI::App& app, ExitCode& exit_code);
+void add_pieces(CLI::App& app, ExitCode& exit_code);
 void add_bench(CLI::App& app, ExitCode& exit_code);
 void add_schema(CLI::App& app, ExitCode& exit_code);
 void add_docs(CLI::App& app, ExitCode& exit_code);

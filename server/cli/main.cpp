@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   add_validate(app, exit_code);
   add_compare(app, exit_code);
   add_render(app, exit_code);
+  add_pieces(app, exit_code);
   add_bench(app, exit_code);
   add_schema(app, exit_code);
   add_docs(app, exit_code);

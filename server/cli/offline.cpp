@@ -14,6 +14,57 @@ void print_problems(const model::Problems& problems) {
     std::fprintf(stderr, "%s\n", model::to_text(problem).c_str());
 }
 
+bool parse_pair(const std::string& text, const std::string& between, long& a, long& b) {
+  const std::size_t at = text.find(between);
+  if (at == std::string::npos) return false;
+  try {
+    std::size_t end_a = 0, end_b = 0;
+    const std::string second = text.substr(at + between.size());
+    a = std::stol(text.substr(0, at), &end_a);
+    b = std::stol(second, &end_b);
+    return end_a == at && end_b == second.size();
+  } catch (const std::exception&) { return false; }
+}
+
+model::Problem bad_option(const char* option, const char* expected, const std::string& found) {
+  return {model::Code::bad_request, "", std::string(option) + ' ' + expected, found, "", {}, {}};
+}
+
+model::Problems resize(model::Show& show, const std::string& size) {
+  long width = 0, height = 0;
+  if (!parse_pair(size, "x", width, height) || width < 1 || height < 1 || width > 16384 || height > 16384)
+    return {bad_option("--size", "as WIDTHxHEIGHT, 1x1 to 16384x16384", size)};
+  for (auto& [name, output] : show.outputs) {
+    output.width = static_cast<int>(width);
+    output.height = static_cast<int>(height);
+  }
+  return {};
+}
+
+model::Problem unknown_name(const std::string& pointer, const char* expected, const std::string& found,
+                            const std::vector<std::string>& names) {
+  const std::string near = model::nearest(found, names);
+  const std::string advice = near.empty() ? "" : "Did you mean '" + near + "'?";
+  return {model::Code::unknown_reference, pointer, expected, found, advice, {}, {}};
+}
+
+model::Problems keep_output(model::Show& show, const std::string& name) {
+  if (!show.outputs.contains(name)) {
+    std::vector<std::string> names;
+    for (const auto& [other, output] : show.outputs) names.push_back(other);
+    return {unknown_name("/outputs", "an output of the show", name, names)};
+  }
+  std::erase_if(show.outputs, [&](const auto& entry) { return entry.first != name; });
+  return {};
+}
+
+ExitCode exit_of_unloaded(const model::Problems& problems) {
+  const auto unread = [](const model::Problem& problem) {
+    return problem.code == model::Code::file_unreadable || problem.code == model::Code::file_too_large;
+  };
+  return std::any_of(problems.begin(), problems.end(), unread) ? exit_unusable : exit_no;
+}
+
 model::Result<OfflineRenderer> make_offline_renderer(frame::RendererOptions options) {
   OfflineRenderer made;
   const auto report = [](outputs::MessageLevel level, std::string_view words) {

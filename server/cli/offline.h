@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "configs/model/problem.h"
 #include "configs/model/show.h"
 #include "renderer/frame/renderer.h"
 #include "renderer/outputs/context.h"
 #include "renderer/outputs/image_file.h"
+#include "server/cli/commands.h"
 
 namespace cupola::cli {
 
@@ -33,6 +35,23 @@ make_stage(const model::Show& show, const std::filesystem::path& folder,
 
 /// The picture as bytes, rows from the top. With the context current.
 [[nodiscard]] outputs::ByteImage read_picture(const frame::Picture& picture);
+
+/// "80x40" with `between` "x": 80 and 40.
+[[nodiscard]] bool parse_pair(const std::string& text, const std::string& between, long& a, long& b);
+
+[[nodiscard]] model::Problem bad_option(const char* option, const char* expected, const std::string& found);
+
+/// `size`: as --size has it, WIDTHxHEIGHT, for all outputs.
+[[nodiscard]] model::Problems resize(model::Show& show, const std::string& size);
+
+[[nodiscard]] model::Problem unknown_name(const std::string& pointer, const char* expected,
+                                          const std::string& found, const std::vector<std::string>& names);
+
+/// Leaves the output named alone in the show.
+[[nodiscard]] model::Problems keep_output(model::Show& show, const std::string& name);
+
+/// After load_show() failed with these: exit_unusable where the file could not be read, else exit_no.
+[[nodiscard]] ExitCode exit_of_unloaded(const model::Problems& problems);
 
 /// Prints problems to standard error.
 void print_problems(const model::Problems& problems);

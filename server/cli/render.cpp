@@ -1,6 +1,5 @@
 // cupola render: pictures of a show, off-line.
 #include <CLI/App.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -30,51 +29,16 @@ struct FrameRange {
   bool given = false;
 };
 
-bool parse_pair(const std::string& text, const std::string& between, long& a, long& b) {
-  const std::size_t at = text.find(between);
-  if (at == std::string::npos) return false;
-  try {
-    std::size_t end_a = 0, end_b = 0;
-    const std::string second = text.substr(at + between.size());
-    a = std::stol(text.substr(0, at), &end_a);
-    b = std::stol(second, &end_b);
-    return end_a == at && end_b == second.size();
-  } catch (const std::exception&) { return false; }
-}
-
-model::Problem bad(const char* option, const char* expected, const std::string& found) {
-  return {model::Code::bad_request, "", std::string(option) + ' ' + expected, found, "", {}, {}};
-}
-
 /// Puts the options into the show, so that planning sees them as if they stood in the file.
 model::Problems apply(const Options& options, model::Show& show) {
   model::Problems problems;
-  long width = 0, height = 0;
-  const bool resized = !options.size.empty();
-  if (resized && (!parse_pair(options.size, "x", width, height) || width < 1 || height < 1 || width > 16384 ||
-                  height > 16384))
-    problems.push_back(bad("--size", "as WIDTHxHEIGHT, 1x1 to 16384x16384", options.size));
-  if (!options.output.empty()) {
-    if (!show.outputs.contains(options.output)) {
-      std::vector<std::string> names;
-      for (const auto& [name, output] : show.outputs) names.push_back(name);
-      const std::string near = model::nearest(options.output, names);
-      problems.push_back({model::Code::unknown_reference,
-                          "/outputs",
-                          "an output of the show",
-                          options.output,
-                          near.empty() ? "" : "Did you mean '" + near + "'?",
-                          {},
-                          {}});
+  if (!options.size.empty()) problems = resize(show, options.size);
+  if (!options.output.empty())
+    if (auto unknown = keep_output(show, options.output); !unknown.empty()) {
+      problems.insert(problems.end(), unknown.begin(), unknown.end());
       return problems;
     }
-    std::erase_if(show.outputs, [&](const auto& entry) { return entry.first != options.output; });
-  }
   for (auto& [name, output] : show.outputs) {
-    if (resized && problems.empty()) {
-      output.width = static_cast<int>(width);
-      output.height = static_cast<int>(height);
-    }
     if (options.method.empty()) continue;
     for (auto& [viewport_name, viewport] : output.viewports)
       viewport.method = options.method == "piecewise" ? model::Method::piecewise
@@ -89,7 +53,7 @@ model::Problems apply(const Options& options, model::Show& show) {
       if (size < 16 || size > 16384) throw std::out_of_range("size");
       show.quality.cubemap_size = size;
     } catch (const std::exception&) {
-      problems.push_back(bad("--cubemap-size", "from 16 to 16384, or auto", options.cubemap_size));
+      problems.push_back(bad_option("--cubemap-size", "from 16 to 16384, or auto", options.cubemap_size));
     }
   }
   if (options.samples > 0) show.quality.samples = options.samples;
@@ -103,7 +67,7 @@ model::Result<FrameRange> parse_frames(const std::string& text) {
   if (text.empty()) return range;
   range.given = true;
   if (!parse_pair(text, "..", range.first, range.last) || range.first < 0 || range.last < range.first)
-    return model::failure(bad("--frames", "as FIRST..LAST, counted from 0", text));
+    return model::failure(bad_option("--frames", "as FIRST..LAST, counted from 0", text));
   return range;
 }
 
@@ -157,10 +121,7 @@ ExitCode run(const Options& options) {
   auto loaded = loader::load_show(options.show);
   if (!loaded) {
     print_problems(loaded.error());
-    const auto unread = [](const model::Problem& problem) {
-      return problem.code == model::Code::file_unreadable || problem.code == model::Code::file_too_large;
-    };
-    return std::any_of(loaded.error().begin(), loaded.error().end(), unread) ? exit_unusable : exit_no;
+    return exit_of_unloaded(loaded.error());
   }
   model::Problems problems = apply(options, loaded->show);
   auto range = parse_frames(options.frames);
@@ -177,7 +138,7 @@ ExitCode run(const Options& options) {
                              (single && target.has_extension() && !std::filesystem::is_directory(target));
   if (names_picture && !single) {
     print_problems(
-        {bad("-o", "as a folder for several pictures (or --output NAME for one)", options.target)});
+        {bad_option("-o", "as a folder for several pictures (or --output NAME for one)", options.target)});
     return exit_unusable;
   }
 

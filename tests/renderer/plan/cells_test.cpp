@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "renderer/plan/measure.h"
 #include "renderer/plan/plan.h"
 
 using namespace cupola;
@@ -22,82 +23,6 @@ projection::Map map_of(const model::Shape& shape, const PixelRect& rect, double 
   projection.off_axis = off_axis;
   projection.orientation = orientation;
   return projection::make_map(projection, double(rect.width) / rect.height);
-}
-
-/// All pixel centres of a triangle with corners in normalised device coordinates.
-template <class F>
-void each_pixel(const std::array<glm::dvec2, 3>& screen, const PixelRect& rect, F f) {
-  std::array<glm::dvec2, 3> p;
-  for (std::size_t i = 0; i < 3; ++i)
-    p[i] = {(screen[i].x + 1.0) * 0.5 * rect.width, (1.0 - screen[i].y) * 0.5 * rect.height};
-  const auto [left, right] = std::minmax({p[0].x, p[1].x, p[2].x});
-  const auto [top, bottom] = std::minmax({p[0].y, p[1].y, p[2].y});
-  for (int y = std::max(0, static_cast<int>(top)); y < std::min<double>(bottom, rect.height); ++y)
-    for (int x = std::max(0, static_cast<int>(left)); x < std::min<double>(right, rect.width); ++x) {
-      bool within = true;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec2 side = p[(i + 1) % 3] - p[i], to = glm::dvec2(x + 0.5, y + 0.5) - p[i];
-        within = within && side.x * to.y - side.y * to.x < 0.0;
-      }
-      if (within) f(x, y);
-    }
-}
-
-/// What every pixel centre says, with nothing but the true map and the matrices of the pieces.
-struct Measured {
-  double largest = 0.0, rms = 0.0, least_w = 1e300;
-  long uncovered = 0, covered_twice = 0, not_shown = 0, outside_planes = 0, outside_bounds = 0, looked_up = 0;
-  long shown = 0;
-};
-
-Measured measure(const PieceSet& set, const projection::Map& map, const PixelRect& rect) {
-  Measured out;
-  std::vector<unsigned char> times(static_cast<std::size_t>(rect.width) * rect.height, 0);
-  const auto ray_at = [&](int x, int y) {
-    return projection::ray(map, {-1.0 + (2.0 * x + 1.0) / rect.width, 1.0 - (2.0 * y + 1.0) / rect.height});
-  };
-  double sum = 0.0;
-  long drawn = 0;
-  for (std::size_t i = 0; i < set.pieces.size(); ++i) {
-    const Piece& piece = set.pieces[i];
-    const auto& t = set.triangles[i];
-    each_pixel({set.corners[t[0]].screen, set.corners[t[1]].screen, set.corners[t[2]].screen}, rect,
-               [&](int x, int y) {
-                 const auto v = ray_at(x, y);
-                 if (!v) {
-                   if (set.shown[i] == Shown::all) ++out.not_shown;
-                   return;
-                 }
-                 ++times[static_cast<std::size_t>(y) * rect.width + x];
-                 const glm::dvec3 h = piece.to_screen * *v;
-                 const double error = std::hypot((h.x / h.z + 1.0) * 0.5 * rect.width - x - 0.5,
-                                                 (1.0 - h.y / h.z) * 0.5 * rect.height - y - 0.5);
-                 out.largest = std::max(out.largest, error);
-                 out.least_w = std::min(out.least_w, h.z);
-                 sum += error * error;
-                 ++drawn;
-                 if (x < piece.bounds.x - rect.x || y < piece.bounds.y - rect.y ||
-                     x >= piece.bounds.x - rect.x + piece.bounds.width ||
-                     y >= piece.bounds.y - rect.y + piece.bounds.height)
-                   ++out.outside_bounds;
-               });
-  }
-  for (const auto& screen : set.looked_up)
-    each_pixel(screen, rect, [&](int x, int y) {
-      if (!ray_at(x, y)) return;
-      ++times[static_cast<std::size_t>(y) * rect.width + x];
-      ++out.looked_up;
-    });
-  for (int y = 0; y < rect.height; ++y)
-    for (int x = 0; x < rect.width; ++x) {
-      const int n = times[static_cast<std::size_t>(y) * rect.width + x];
-      const bool shown = ray_at(x, y).has_value();
-      out.shown += shown ? 1 : 0;
-      if (shown && n == 0) ++out.uncovered;
-      if (n > 1) ++out.covered_twice;
-    }
-  out.rms = drawn > 0 ? std::sqrt(sum / static_cast<double>(drawn)) : 0.0;
-  return out;
 }
 
 int twos(long n) { return std::countr_zero(static_cast<unsigned long>(std::labs(n))); }
