@@ -101,7 +101,8 @@ struct ViewportPlan {
   PixelRect rect; ///< in output pixels, before supersampling
   projection::Map map;
   model::Method method{};
-  std::optional<PieceSet> pieces; ///< methods piecewise and automatic (there only where it can); none: cubemap
+  std::optional<PieceSet>
+      pieces; ///< methods piecewise and automatic (there only where it can); none: cubemap
 };
 
 /// The cubemap has to hold what this viewport shows.

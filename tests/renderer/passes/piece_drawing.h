@@ -81,7 +81,8 @@ public:
                                       glm::mat3(glm::transpose(camera_.orientation)),
                                       near,
                                       style,
-                                      !scene_->lights.empty()});
+                                      !scene_->lights.empty(),
+                                      false});
     gpu_.load_triangles(set_, table_, glm::dvec2(size));
   }
 
