@@ -45,7 +45,7 @@ struct Point {
   glm::vec3 in_piece;
   glm::vec3 in_triangle; ///< sum 1
   std::uint8_t edges;    ///< bits of the triangle's edges it lies on
-  std::int8_t border;    ///< of the piece: 0, 1, 2 opposite that corner; -1: a corner of the triangle
+  int border;            ///< of the piece: 0, 1, 2 opposite that corner; -1: a corner of the triangle
 };
 
 struct Polygon {
@@ -62,7 +62,7 @@ Point meet(const Point& p, const Point& q, int axis) {
   out.in_piece[axis] = 0.0f;
   out.in_triangle = p.in_triangle + t * (q.in_triangle - p.in_triangle);
   out.edges = p.edges & q.edges;
-  out.border = static_cast<std::int8_t>(axis);
+  out.border = axis;
   return out;
 }
 

@@ -239,7 +239,9 @@ private:
     double longest = 0.0;
     for (const Method method : {Method::piecewise, Method::cubemap}) {
       const auto settings = ways_to_spend_time(method);
-      say(view + ", " + name + ": " + std::to_string(settings.size()) + " ways to spend time");
+      std::string line = view;
+      line.append(", ").append(name).append(": ").append(std::to_string(settings.size()));
+      say(line.append(" ways to spend time"));
       for (const QualitySetting& setting : settings) {
         Spent spent{setting, {}};
         // What takes longer than all pieces is nobody's rival: one pose tells.
@@ -339,8 +341,7 @@ std::vector<std::string> notes() {
         "best: the same settings, the best cubemap of 1 to 4 times that size, with and without mipmaps.",
         "equal time: for each setting of the pieces that no other beats in both time and PSNR, the best",
         "cubemap that takes at most 1.05 of its time; the mean lead over these, and the least.",
-        "minus_plain_db: what plain perspectives over the same directions reach, less what pieces reach "
-        "there.",
+        "minus_plain_db: what plain perspectives over the same directions reach, less what pieces do.",
         "sharpness: gradient along the reference's steepest edges, over the reference's own."})
     lines.emplace_back(line);
   return lines;

@@ -85,7 +85,7 @@ QualityCase::QualityCase(model::Show show, int poses, int reference_samples, con
   }
 }
 
-bool QualityCase::measure(frame::Renderer& renderer, const QualitySetting& setting, int poses, int timed,
+bool QualityCase::measure(frame::Renderer& renderer, const QualitySetting& setting, int poses, int frames,
                           QualityFigures& figures) {
   viewport_of(show_).method = setting.method;
   show_.quality.samples = setting.samples;
@@ -108,13 +108,13 @@ bool QualityCase::measure(frame::Renderer& renderer, const QualitySetting& setti
       print_problems(failed);
       return false;
     }
-    if (timed > 0) figures.milliseconds += quickest_frame(renderer, timed, pose) / poses;
+    if (frames > 0) figures.milliseconds += quickest_frame(renderer, frames, pose) / poses;
     drawn_.push_back(read_picture(renderer.pictures().front()));
     const reference::Pixels got = pixels(drawn_.back()), wanted = pixels(reference(pose));
     const reference::Comparison compared =
-        reference::compare(got, wanted, {.mask = mask_, .ssim = timed == 0});
+        reference::compare(got, wanted, {.mask = mask_, .ssim = frames == 0});
     figures.psnr_db += compared.psnr_db / poses;
-    if (timed > 0) continue;
+    if (frames > 0) continue;
     figures.ssim += compared.ssim.value_or(0.0) / poses;
     figures.sharpness += reference::edge_sharpness(got, wanted, mask_).value_or(0.0) / poses;
   }

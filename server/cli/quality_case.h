@@ -41,9 +41,9 @@ public:
   /// Where the show cannot be planned the problems are printed, and there are no poses.
   QualityCase(model::Show show, int poses, int reference_samples, const QualityWorld& world);
 
-  /// Over `poses` of the poses, evenly spread. `timed`: frames of each pose after the first; the least time
+  /// Over `poses` of the poses, evenly spread. `frames`: so many of each pose after the first; the least time
   /// of these counts. False, with the problems printed, when something cannot be drawn.
-  bool measure(frame::Renderer& renderer, const QualitySetting& setting, int poses, int timed,
+  bool measure(frame::Renderer& renderer, const QualitySetting& setting, int poses, int frames,
                QualityFigures& figures);
 
   [[nodiscard]] int matched_size() const { return matched_; }

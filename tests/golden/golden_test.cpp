@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/drawing.h"
@@ -22,7 +23,7 @@ struct Case {
 
 model::Projection shaped(model::Shape shape) {
   model::Projection projection;
-  projection.shape = shape;
+  projection.shape = std::move(shape);
   return projection;
 }
 

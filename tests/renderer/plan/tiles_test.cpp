@@ -8,15 +8,11 @@
 using namespace cupola::plan;
 
 TEST_CASE("tiles cover a rectangle exactly, borders clear of all pixel centres") {
-  for (const auto& [width, height] : {std::pair{1, 1},
-                                      {2, 2},
-                                      {3, 3},
-                                      {1, 100},
-                                      {256, 256},
-                                      {341, 341},
-                                      {512, 384},
-                                      {340, 342},
-                                      {97, 16}}) {
+  constexpr struct {
+    int width, height;
+  } sizes[] = {{1, 1}, {2, 2}, {3, 3}, {1, 100}, {256, 256}, {341, 341}, {512, 384}, {340, 342}, {97, 16}};
+  for (const auto& size : sizes) {
+    const int width = size.width, height = size.height;
     CAPTURE(width);
     CAPTURE(height);
     const PixelRect rect{5, 9, width, height};
