@@ -307,6 +307,13 @@ struct Pieces {
   bool operator==(const Pieces&) const = default;
 };
 
+/// Drawn over pictures so that one sees how they come about.
+struct Debug {
+  bool pieces = false;     ///< borders of pieces, black, over viewports that are drawn piecewise
+  bool primitives = false; ///< edges of the scene's triangles, white
+  bool operator==(const Debug&) const = default;
+};
+
 struct HttpListener {
   bool enabled = true;
   std::string address = "127.0.0.1";
@@ -338,6 +345,7 @@ struct Show {
   std::map<std::string, Output> outputs;
   Quality quality;
   Pieces pieces;
+  Debug debug;
   Control control;
   bool operator==(const Show&) const = default;
 };

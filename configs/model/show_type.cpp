@@ -414,6 +414,17 @@ const Type& pieces_type() {
   return type;
 }
 
+const Type& debug_type() {
+  static const Type type =
+      Describe<Debug>("debug", "What is drawn over pictures to show how they come about.")
+          .boolean("pieces", &Debug::pieces, Cost::uniform,
+                   "Black borders of pieces over viewports that are drawn piecewise.")
+          .boolean("primitives", &Debug::primitives, Cost::uniform,
+                   "Thick white edges of the scene's triangles, by every method but the reference.")
+          .take();
+  return type;
+}
+
 template <class L>
 Type listener_type(const char* name, const char* doc) {
   return Describe<L>(name, doc)
@@ -453,6 +464,8 @@ const Type& show_type() {
           .map("outputs", &Show::outputs, output_type(), {1, 64}, Cost::reopen, "Outputs by name.")
           .object("quality", &Show::quality, quality_type(), "How carefully is rendered.")
           .object("pieces", &Show::pieces, pieces_type(), "Piecewise perspective projection.")
+          .object("debug", &Show::debug, debug_type(),
+                  "What is drawn over pictures to show how they come about.")
           .object("control", &Show::control, control_type(), "Listeners for live control.")
           .take();
   // `version` has no default worth guessing: a show says which format it is written in.

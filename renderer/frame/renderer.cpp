@@ -18,6 +18,7 @@
 #include "renderer/passes/gpu_pieces.h"
 #include "renderer/passes/lookup_pass.h"
 #include "renderer/passes/piece_area.h"
+#include "renderer/passes/piece_lines.h"
 #include "renderer/passes/scene_pass.h"
 #include "renderer/plan/camera.h"
 
@@ -49,7 +50,7 @@ Device query_device() {
 
 /// The programs that do not depend on the scene.
 struct FixedPrograms {
-  gl::Program downsample, picture;
+  gl::Program downsample, picture, piece_lines;
   passes::PieceArea::Programs area;
 };
 
@@ -59,13 +60,15 @@ model::Result<FixedPrograms> build_fixed() {
       {"downsample", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/downsample.frag.glsl"}}, {}});
   auto picture = gl::build_program(
       {"picture", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/picture.frag.glsl"}}, {}});
+  auto piece_lines = passes::PieceLines::make_program();
   auto area = passes::PieceArea::make_programs();
   model::Problems problems;
-  for (const auto* result : {&downsample, &picture})
+  for (const auto* result : {&downsample, &picture, &piece_lines})
     if (!*result) problems.insert(problems.end(), result->error().begin(), result->error().end());
   if (!area) problems.insert(problems.end(), area.error().begin(), area.error().end());
   if (!problems.empty()) return tl::unexpected(problems);
-  return FixedPrograms{std::move(*downsample), std::move(*picture), std::move(*area)};
+  return FixedPrograms{std::move(*downsample), std::move(*picture), std::move(*piece_lines),
+                       std::move(*area)};
 }
 
 } // namespace
@@ -310,7 +313,8 @@ passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, do
           static_cast<float>(show.camera.near),
           show.scene.style.kind,
           !lights.empty(),
-          device.software && show.quality.samples > 1};
+          device.software && show.quality.samples > 1,
+          show.debug.primitives};
 }
 
 Cells& Renderer::Impl::cells_of(const std::string& key, const plan::PieceSet& set) {
@@ -425,6 +429,10 @@ passes::DrawCounts Renderer::Impl::draw_output(const plan::OutputPlan& output,
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
       }
       counts += draw_pieces(key, viewport, scene, scale);
+      if (current->stage->show->debug.pieces) {
+        glScissor(rect[0], rect[1], rect[2], rect[3]); // strips have moved it
+        passes::PieceLines(*viewport.pieces, r, scale).draw(fixed.piece_lines);
+      }
       break;
     case model::Method::cubemap:
       lookup.draw(viewport.map, *current->cubemap);

@@ -145,8 +145,12 @@ void main() {
 #ifdef CUPOLA_HATCHING
   color = hatch(gl_FragCoord.xy / style_scale, luminance(color), frame.style.y, frame.style.x);
 #endif
-#ifdef CUPOLA_EDGES
+#ifdef CUPOLA_WIREFRAME
   color = wireframe(luminance(color), wire_coverage(edge_pixels(), frame.style.x), surface.distance, frame.style.z);
+#endif
+#ifdef CUPOLA_PRIMITIVES
+  const float primitive_width = 2.5; // output pixels
+  color = mix(color, vec3(1.0), wire_coverage(edge_pixels(), primitive_width));
 #endif
   out_color = vec4(color, surface.alpha);
 }

@@ -87,7 +87,8 @@ void ScenePass::bind_program(const FrameScene& scene, VertexPath path, std::uint
                              float style_scale, std::span<const glm::mat3> to_screen,
                              std::span<const int> layers) {
   const std::uint32_t features = scene.gpu.features(material);
-  glUseProgram(programs_.get(path, {scene.style, scene.lights, scene.shades_uncovered}, features));
+  glUseProgram(
+      programs_.get(path, {scene.style, scene.lights, scene.primitives, scene.shades_uncovered}, features));
   glUniform1f(12, style_scale);
   if (!to_screen.empty())
     glUniformMatrix3fv(0, static_cast<GLsizei>(to_screen.size()), GL_FALSE,
@@ -103,7 +104,7 @@ void ScenePass::bind_program(const FrameScene& scene, VertexPath path, std::uint
 }
 
 bool ScenePass::bind_geometry(const FrameScene& scene) const {
-  if (scene.style != model::StyleKind::wireframe) {
+  if (!scene.edges()) {
     glBindVertexArray(scene.gpu.vertex_array());
     return false;
   }
@@ -321,13 +322,8 @@ DrawCounts ScenePass::draw_strips_cpu(const FrameScene& scene, const plan::Piece
   for (const plan::Piece& piece : set.pieces)
     target.scissors.insert(target.scissors.end(),
                            {piece.bounds.x * scale, viewport[1], piece.bounds.width * scale, viewport[3]});
-  const StripView view{set,
-                       azimuths,
-                       scene.eye,
-                       scene.view_from_world,
-                       scene.near,
-                       target.group_size,
-                       scene.style == model::StyleKind::wireframe};
+  const StripView view{set,        azimuths,          scene.eye,    scene.view_from_world,
+                       scene.near, target.group_size, scene.edges()};
   return draw_distributed(scene, max_pairs, target, [&](std::span<const DrawItem> items) {
     distribute_strips(scene.geometry, items, view, batches_);
   });
@@ -339,8 +335,7 @@ DrawCounts ScenePass::draw_cells_cpu(const FrameScene& scene, const PieceTable& 
   std::array<GLint, 4> scissor{};
   glGetIntegerv(GL_SCISSOR_BOX, scissor.data());
   const StripTarget target{scale, 1, {scissor.begin(), scissor.end()}};
-  const CellView view{pieces, scene.eye, scene.view_from_world, scene.near,
-                      scene.style == model::StyleKind::wireframe};
+  const CellView view{pieces, scene.eye, scene.view_from_world, scene.near, scene.edges()};
   occlusion.reset(pieces.pieces().size());
   return draw_distributed(scene, max_pairs, target, [&](std::span<const DrawItem> items) {
     distribute_cells(scene.geometry, items, view, occlusion, batches_);

@@ -27,7 +27,11 @@ struct FrameScene {
   float near;
   model::StyleKind style;
   bool lights;
-  bool shades_uncovered; ///< see FrameVariant
+  bool shades_uncovered;   ///< see FrameVariant
+  bool primitives = false; ///< see FrameVariant
+
+  /// Corners must keep their own barycentric coordinates: nothing is shared.
+  [[nodiscard]] bool edges() const { return primitives || style == model::StyleKind::wireframe; }
 };
 
 /// Work done, for statistics.

@@ -23,8 +23,11 @@ std::vector<std::string> defines_of(VertexPath path, const FrameVariant& frame, 
   if (frame.lights) defines.emplace_back("CUPOLA_LIGHTS");
   if (frame.shades_uncovered) defines.emplace_back("CUPOLA_UNCOVERED");
   if (path == VertexPath::emitted && per_strip_scissors()) defines.emplace_back("CUPOLA_SCISSORS");
-  const bool edges = frame.style == model::StyleKind::wireframe;
+  const bool wireframe = frame.style == model::StyleKind::wireframe;
+  const bool edges = wireframe || frame.primitives;
   if (edges) defines.emplace_back("CUPOLA_EDGES");
+  if (wireframe) defines.emplace_back("CUPOLA_WIREFRAME");
+  if (frame.primitives) defines.emplace_back("CUPOLA_PRIMITIVES");
   if (frame.style == model::StyleKind::hatching) defines.emplace_back("CUPOLA_HATCHING");
   // Edges need corners told apart, so vertices are fetched by number instead of shared by index.
   if (path == VertexPath::replicated || (edges && path != VertexPath::emitted))
@@ -39,6 +42,7 @@ bool per_strip_scissors() { return epoxy_has_gl_extension("GL_ARB_shader_viewpor
 GLuint ScenePrograms::get(VertexPath path, const FrameVariant& frame, std::uint32_t features) {
   const std::uint32_t key = features | static_cast<std::uint32_t>(frame.lights) << 16 |
                             static_cast<std::uint32_t>(frame.shades_uncovered) << 17 |
+                            static_cast<std::uint32_t>(frame.primitives) << 18 |
                             static_cast<std::uint32_t>(frame.style) << 20 |
                             static_cast<std::uint32_t>(path) << 24;
   const auto found = programs_.find(key);

@@ -21,7 +21,8 @@ enum class VertexPath : std::uint8_t { direct, layered, emitted, replicated };
 /// What all programs of a frame have in common.
 struct FrameVariant {
   model::StyleKind style = model::StyleKind::textured;
-  bool lights = false; ///< the scene has punctual lights
+  bool lights = false;     ///< the scene has punctual lights
+  bool primitives = false; ///< thick edges of the scene's triangles over what is drawn
   /// Multisampled, by a driver that also shades pixels of which no sample is left: see uncovered.glsl.
   bool shades_uncovered = false;
 };
