@@ -9,6 +9,7 @@
 // continuous over all borders.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <numbers>
@@ -181,11 +182,10 @@ std::vector<int> equal_borders(const Wall& wall, const PixelRect& rect, int allo
   const int columns = wall.end() - wall.first();
   const int width = allowed / unit * unit;
   const int count = (columns + width - 1) / width;
+  const int units = (columns + unit - 1) / unit; // the last may be cut
   std::vector<int> borders;
-  for (int i = 0; i < count; ++i) {
-    const double units = double(columns) / unit * i / count;
-    borders.push_back(wall.first() + unit * static_cast<int>(std::lround(units)));
-  }
+  for (int i = 0; i < count; ++i)
+    borders.push_back(wall.first() + unit * static_cast<int>(std::int64_t{units} * i / count));
   borders.push_back(wall.end());
   return borders;
 }

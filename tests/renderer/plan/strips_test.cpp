@@ -176,6 +176,24 @@ TEST_CASE("with the eye on the axis strips are equally wide, and as few as possi
   CHECK(set->max_error * 32 * 32 / (widest * widest) > 0.25);
 }
 
+TEST_CASE("pictures of every width have strips: none is empty, none too wide") {
+  constexpr double limit = 0.25;
+  const projection::Map map = wall(360.0, 115.0);
+  for (int width = 20; width <= 2000; ++width) {
+    CAPTURE(width);
+    const auto set = make_strips(map, {0, 0, width, width / 2}, limit);
+    REQUIRE(set);
+    CHECK(set->max_error <= limit);
+    int end = 0;
+    for (const Piece& piece : set->pieces) {
+      CHECK(piece.bounds.x == end);
+      CHECK(piece.bounds.width > 0);
+      end += piece.bounds.width;
+    }
+    CHECK(end == width);
+  }
+}
+
 TEST_CASE("off-axis: strips are narrow where the wall is near") {
   const auto set = make_strips(wall(360, 60, 1.0, {0, 0, -0.8}), {0, 0, 1600, 600}, 0.1);
   REQUIRE(set);
