@@ -68,7 +68,7 @@ void add_bench(CLI::App& app, ExitCode& exit_code) {
   bench->require_subcommand(1);
   struct Options {
     bool json = false, quick = false;
-    std::string pictures;
+    std::string pictures, plot;
   };
   auto options = std::make_shared<Options>();
   const auto add = [&](const char* name, const char* words, auto run) {
@@ -90,6 +90,12 @@ void add_bench(CLI::App& app, ExitCode& exit_code) {
       })
       ->add_option("--pictures", options->pictures, "Close-ups go to this folder")
       ->type_name("DIR");
+  add("scaling", "How time grows with triangles, pieces, pixels and outputs.",
+      [](const Options& o) {
+        return bench_scaling({o.json, o.quick, o.plot});
+      })
+      ->add_option("--plot", options->plot, "The curves go to this SVG file")
+      ->type_name("FILE");
 }
 
 } // namespace cupola::cli

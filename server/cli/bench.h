@@ -35,4 +35,11 @@ struct QualityOptions {
 /// error.
 int bench_quality(const QualityOptions& options);
 
+struct ScalingOptions {
+  bool json = false, quick = false;
+  std::string plot; ///< SVG file for the curves; "": none
+};
+/// How time grows with triangles, pieces, pixels and outputs. Progress on standard error.
+int bench_scaling(const ScalingOptions& options);
+
 } // namespace cupola::cli

@@ -3,12 +3,11 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <string>
 
 #include "server/cli/bench.h"
-#include "server/cli/bench_timing.h"
+#include "server/cli/bench_show.h"
 #include "server/cli/commands.h"
 #include "server/cli/offline.h"
 
@@ -20,26 +19,16 @@ constexpr int places = 5, poses = 2 * places; ///< each level and with the view 
 
 /// A dome picture in the middle of the city.
 model::Show dome_show(int size, int triangles) {
-  model::Show show;
+  model::Show show = city_show(model::Fisheye{{180.0}}, size, size, places);
   show.scene.content = model::City{1, triangles};
-  show.camera.loop = true;
-  for (int i = 0; i < poses; ++i) {
-    const double angle = (i % places) * 2.0 * std::numbers::pi / places;
-    model::Keyframe key;
-    key.time = i;
-    key.position = {60.0 * std::sin(angle), 12.0 + 6.0 * std::sin(2.0 * angle), 60.0 * std::cos(angle)};
-    key.orientation.yaw.degrees = std::fmod(angle * 180.0 / std::numbers::pi + 90.0, 360.0);
-    key.orientation.pitch.degrees = i < places ? 0.0 : 20.0;
-    show.camera.path.push_back(key);
+  show.camera.loop = false;
+  show.camera.path.pop_back();
+  for (int i = 0; i < places; ++i) {
+    model::Keyframe raised = show.camera.path[static_cast<std::size_t>(i)];
+    raised.time += places;
+    raised.orientation.pitch.degrees = 20.0;
+    show.camera.path.push_back(raised);
   }
-  model::Projection dome;
-  dome.shape = model::Fisheye{{180.0}};
-  show.projections = {{"dome", dome}};
-  model::Output output;
-  output.sink = model::HeadlessOutput{};
-  output.width = output.height = size;
-  output.viewports["all"] = {"dome", model::Method::piecewise, 0, 0, 1, 1, 0};
-  show.outputs["main"] = output;
   return show;
 }
 
@@ -88,28 +77,18 @@ public:
 private:
   std::optional<Timing> measure(const Way& way, int size, int triangles) {
     model::Show show = dome_show(size, triangles);
-    show.outputs["main"].viewports["all"].method = way.method;
+    viewport_of(show).method = way.method;
     if (way.cubemap_scale > 0.0)
       show.quality.cubemap_size = static_cast<int>(std::lround(matched_ * way.cubemap_scale / 8.0)) * 8;
-    auto stage = make_stage(show, ".", scene_);
-    if (!stage) {
-      print_problems(stage.error());
-      return std::nullopt;
-    }
-    if ((*stage)->plan->cubemap && way.cubemap_scale == 0.0) matched_ = (*stage)->plan->cubemap->size;
-    scene_ = (*stage)->scene;
-    renderer_.set_stage(*stage);
     const bool many = triangles > 1'000'000;
-    const int repeats = quick_ ? 1 : (many ? 2 : 5);
+    Frames frames{double{poses}, poses, quick_ ? 1 : (many ? 2 : 5), 0};
+    if (way.method == model::Method::automatic) frames.before = frame::method_trial_frames;
     if (!as_json_) std::fprintf(stderr, "%dk triangles, %d²: %s\n", triangles / 1000, size, way.name.c_str());
-    for (int i = 0; way.method == model::Method::automatic && i < frame::method_trial_frames; ++i)
-      renderer_.draw(0.0);
-    const Timing timing = time_frames(renderer_, poses, poses, repeats);
-    if (model::Problems failed = renderer_.take_problems(); !failed.empty()) {
-      print_problems(failed);
-      return std::nullopt;
-    }
-    const plan::ViewportPlan& viewport = (*stage)->plan->outputs.front().viewports.front();
+    const auto timed = time_show(renderer_, show, scene_, frames);
+    if (!timed) return std::nullopt;
+    const auto& [timing, stage] = *timed;
+    if (stage->plan->cubemap && way.cubemap_scale == 0.0) matched_ = stage->plan->cubemap->size;
+    const plan::ViewportPlan& viewport = stage->plan->outputs.front().viewports.front();
     report.rows.push_back(
         {{"triangles", triangles},
          {"size", size},
@@ -119,8 +98,7 @@ private:
          {"sent", std::llround(timing.triangles)},
          {"replication", rounded(timing.replication, 0.001)},
          {"pieces", viewport.pieces ? nlohmann::ordered_json(viewport.pieces->pieces.size()) : nullptr},
-         {"cubemap",
-          (*stage)->plan->cubemap ? nlohmann::ordered_json((*stage)->plan->cubemap->size) : nullptr}});
+         {"cubemap", stage->plan->cubemap ? nlohmann::ordered_json(stage->plan->cubemap->size) : nullptr}});
     return timing;
   }
 

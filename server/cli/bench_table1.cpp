@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "server/cli/bench.h"
-#include "server/cli/bench_timing.h"
+#include "server/cli/bench_show.h"
 #include "server/cli/commands.h"
 #include "server/cli/offline.h"
 
@@ -10,30 +10,12 @@ namespace cupola::cli {
 
 namespace {
 
+constexpr int places = 8; ///< through which the path goes
+
 /// The paper's scene: a textured city of 35,000 triangles in 14 groups, 1600 × 1200, a path through it.
 model::Show paper_show() {
-  model::Show show;
-  show.scene.content = model::City{};
-  show.camera.loop = true;
-  for (int i = 0; i <= 8; ++i) {
-    const double angle = i * 2.0 * 3.14159265358979 / 8.0;
-    model::Keyframe key;
-    key.time = i;
-    key.position = {60.0 * std::sin(angle), 12.0 + 6.0 * std::sin(2.0 * angle), 60.0 * std::cos(angle)};
-    key.orientation.yaw.degrees = std::fmod(angle * 180.0 / 3.14159265358979 + 90.0, 360.0);
-    show.camera.path.push_back(key);
-  }
-  model::Projection cylinder;
-  cylinder.shape = model::Cylinder{{360.0}, {134.0}};
-  model::Projection perspective;
-  perspective.shape = model::Perspective{{75.0}, std::nullopt};
-  show.projections = {{"cylinder", cylinder}, {"perspective", perspective}};
-  model::Output output;
-  output.sink = model::HeadlessOutput{};
-  output.width = 1600;
-  output.height = 1200;
-  output.viewports["all"] = {"cylinder", model::Method::piecewise, 0, 0, 1, 1, 0};
-  show.outputs["main"] = output;
+  model::Show show = city_show(model::Cylinder{{360.0}, {134.0}}, 1600, 1200, places);
+  show.projections["plain"].shape = model::Perspective{{75.0}, std::nullopt};
   show.quality.cubemap_size = 2048;
   return show;
 }
@@ -48,11 +30,11 @@ struct Row {
 };
 
 constexpr Row rows[] = {
-    {"plain perspective", "perspective", model::Method::piecewise, false, 0.0, 0.0},
-    {"IB", "cylinder", model::Method::cubemap, false, 41.7, 0.61},
-    {"PPP", "cylinder", model::Method::piecewise, false, 84.7, 1.96},
-    {"IB HQ", "cylinder", model::Method::cubemap, true, 33.8, 0.61},
-    {"PPP HQ", "cylinder", model::Method::piecewise, true, 54.8, 1.96},
+    {"plain perspective", "plain", model::Method::piecewise, false, 0.0, 0.0},
+    {"IB", "view", model::Method::cubemap, false, 41.7, 0.61},
+    {"PPP", "view", model::Method::piecewise, false, 84.7, 1.96},
+    {"IB HQ", "view", model::Method::cubemap, true, 33.8, 0.61},
+    {"PPP HQ", "view", model::Method::piecewise, true, 54.8, 1.96},
 };
 
 } // namespace
@@ -71,30 +53,20 @@ int bench_table1(bool as_json, bool quick) {
   std::vector<double> milliseconds;
   double replication = 0.0;
   for (const Row& row : rows) {
-    model::Viewport& viewport = show.outputs["main"].viewports["all"];
+    model::Viewport& viewport = viewport_of(show);
     viewport.projection = row.projection;
     viewport.method = row.method;
     show.quality.anisotropy = row.high_quality ? renderer.device().max_anisotropy : 1;
     show.quality.samples = row.high_quality ? renderer.device().max_samples : 1;
-    auto stage = make_stage(show, ".", scene);
-    if (!stage) {
-      print_problems(stage.error());
-      return exit_no;
-    }
-    scene = (*stage)->scene;
-    renderer.set_stage(*stage);
     // A software rasteriser takes seconds for a frame of high quality: few of them have to do.
     const bool slow = row.high_quality && renderer.device().software;
     const int poses = quick ? 2 : (slow ? 3 : 12), repeats = quick || slow ? 1 : 5;
     if (!as_json) std::fprintf(stderr, "%s: %d poses × %d frames\n", row.name, poses, repeats);
-    const Timing measured = time_frames(renderer, 8.0, poses, repeats);
-    if (model::Problems failed = renderer.take_problems(); !failed.empty()) {
-      print_problems(failed);
-      return exit_no;
-    }
+    const auto timed = time_show(renderer, show, scene, {double{places}, poses, repeats});
+    if (!timed) return exit_no;
+    const Timing& measured = timed->timing;
     milliseconds.push_back(measured.milliseconds);
-    const bool piecewise =
-        row.method == model::Method::piecewise && std::string(row.projection) == "cylinder";
+    const bool piecewise = row.method == model::Method::piecewise && std::string(row.projection) == "view";
     if (piecewise && !row.high_quality) replication = measured.replication;
     const double ratio = piecewise
                              ? measured.replication

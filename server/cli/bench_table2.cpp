@@ -6,7 +6,7 @@
 #include <string>
 
 #include "server/cli/bench.h"
-#include "server/cli/bench_timing.h"
+#include "server/cli/bench_show.h"
 #include "server/cli/commands.h"
 #include "server/cli/offline.h"
 
@@ -18,32 +18,13 @@ constexpr int poses = 8;
 
 /// The paper's scene and size; the grid lies over a perspective of 75° and bends every cell of it.
 model::Show grid_show(int columns, int rows) {
-  model::Show show;
-  show.scene.content = model::City{};
-  show.camera.loop = true;
-  for (int i = 0; i <= poses; ++i) {
-    const double angle = i * 2.0 * std::numbers::pi / poses;
-    model::Keyframe key;
-    key.time = i;
-    key.position = {60.0 * std::sin(angle), 12.0 + 6.0 * std::sin(2.0 * angle), 60.0 * std::cos(angle)};
-    key.orientation.yaw.degrees = std::fmod(angle * 180.0 / std::numbers::pi + 90.0, 360.0);
-    show.camera.path.push_back(key);
-  }
   model::CameraTexture texture;
   texture.columns = columns;
   texture.rows = rows;
   texture.deformations["zoom"] = {model::RadialZoom{0.35}, 0.0, 0.0, 1.6, 0};
   texture.deformations["swirl"] = {model::Swirl{{12.0}}, 0.0, 0.0, 1.6, 1};
-  model::Projection grid, plain;
-  grid.shape = texture;
-  plain.shape = model::Perspective{{75.0}, std::nullopt};
-  show.projections = {{"grid", grid}, {"plain", plain}};
-  model::Output output;
-  output.sink = model::HeadlessOutput{};
-  output.width = 1600;
-  output.height = 1200;
-  output.viewports["all"] = {"grid", model::Method::piecewise, 0, 0, 1, 1, 0};
-  show.outputs["main"] = output;
+  model::Show show = city_show(texture, 1600, 1200, poses);
+  show.projections["plain"].shape = model::Perspective{{75.0}, std::nullopt};
   return show;
 }
 
@@ -57,10 +38,10 @@ struct Row {
 
 constexpr Row rows[] = {
     {"plain perspective", "plain", 128, 128, model::Method::piecewise, 0.0, 0.0},
-    {"IB 128x128", "grid", 128, 128, model::Method::cubemap, 206.2, 1.0},
-    {"PPP 128x128", "grid", 128, 128, model::Method::piecewise, 8.4, 21.04},
-    {"IB 80x60", "grid", 80, 60, model::Method::cubemap, 0.0, 0.0},
-    {"PPP 80x60", "grid", 80, 60, model::Method::piecewise, 22.1, 10.17},
+    {"IB 128x128", "view", 128, 128, model::Method::cubemap, 206.2, 1.0},
+    {"PPP 128x128", "view", 128, 128, model::Method::piecewise, 8.4, 21.04},
+    {"IB 80x60", "view", 80, 60, model::Method::cubemap, 0.0, 0.0},
+    {"PPP 80x60", "view", 80, 60, model::Method::piecewise, 22.1, 10.17},
 };
 
 nlohmann::ordered_json row_of(const Row& row, const Timing& timing, const plan::Plan& plan) {
@@ -95,25 +76,16 @@ int bench_table2(bool as_json, bool quick) {
   int picture = 0;
   for (const Row& row : rows) {
     model::Show show = grid_show(row.columns, row.rows);
-    model::Viewport& viewport = show.outputs["main"].viewports["all"];
+    model::Viewport& viewport = viewport_of(show);
     viewport.projection = row.projection;
     viewport.method = row.method;
-    auto stage = make_stage(show, ".", scene);
-    if (!stage) {
-      print_problems(stage.error());
-      return exit_no;
-    }
-    scene = (*stage)->scene;
-    renderer.set_stage(*stage);
     if (!as_json) std::fprintf(stderr, "%s\n", row.name);
-    const Timing timing = time_frames(renderer, poses, quick ? 2 : poses, quick ? 2 : 7);
-    if (model::Problems failed = renderer.take_problems(); !failed.empty()) {
-      print_problems(failed);
-      return exit_no;
-    }
+    const auto timed = time_show(renderer, show, scene, {double{poses}, quick ? 2 : poses, quick ? 2 : 7});
+    if (!timed) return exit_no;
+    const auto& [timing, stage] = *timed;
     timings[row.name] = timing;
-    if ((*stage)->plan->cubemap) picture = (*stage)->plan->cubemap->size;
-    report.rows.push_back(row_of(row, timing, *(*stage)->plan));
+    if (stage->plan->cubemap) picture = stage->plan->cubemap->size;
+    report.rows.push_back(row_of(row, timing, *stage->plan));
   }
   const auto ratio = [&](const char* over, const char* under) {
     return rounded(timings[over].milliseconds / timings[under].milliseconds, 0.001);

@@ -49,7 +49,7 @@ double quickest_frame(frame::Renderer& renderer, int repeats, double time) {
   return least;
 }
 
-double rounded(double value, double step) { return std::round(value / step) * step; }
+double rounded(double value, double step) { return std::round(value / step) / (1.0 / step); }
 
 std::string device_line(const frame::Renderer& renderer) {
   return renderer.device().name + ", OpenGL " + renderer.device().version;

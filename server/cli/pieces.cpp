@@ -72,7 +72,9 @@ const char* kind_of(const plan::PieceSet& set) {
 }
 
 Figures figures_of(const plan::OutputPlan& output, const plan::ViewportPlan& viewport) {
-  Figures figures{output.name, viewport.name};
+  Figures figures;
+  figures.output = output.name;
+  figures.viewport = viewport.name;
   if (!viewport.pieces) {
     figures.looked_up = 1.0; // nothing was left for pieces
     return figures;

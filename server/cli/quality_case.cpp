@@ -3,23 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 #include "renderer/content/scene.h"
 #include "renderer/plan/camera.h"
 #include "renderer/plan/plan.h"
 #include "renderer/reference/compare.h"
 #include "renderer/reference/sharpness.h"
-#include "server/cli/bench_timing.h"
+#include "server/cli/bench_show.h"
 #include "server/cli/offline.h"
 
 namespace cupola::cli {
 
 namespace {
 
-reference::Pixels pixels(const outputs::ByteImage& image) { return {image.rgba, image.width, image.height}; }
+constexpr double room_scale = 2.6 / 60.0; ///< of the way round the city
 
-model::Viewport& viewport_of(model::Show& show) { return show.outputs["main"].viewports["all"]; }
+reference::Pixels pixels(const outputs::ByteImage& image) { return {image.rgba, image.width, image.height}; }
 
 } // namespace
 
@@ -34,26 +33,15 @@ QualityWorld make_world(const model::Content& content) {
 
 model::Show quality_show(const model::Content& content, const model::Style& style, const model::Shape& shape,
                          int width, int height, int poses) {
-  model::Show show;
+  model::Show show = city_show(shape, width, height, poses);
   show.scene.content = content;
   show.scene.style = style;
-  const bool room = std::holds_alternative<model::Room>(content);
-  for (int i = 0; i < poses; ++i) {
-    const double angle = i * 2.0 * std::numbers::pi / poses, wave = std::sin(2.0 * angle);
-    model::Keyframe key;
-    key.time = i;
-    key.position = room ? glm::dvec3(2.6 * std::sin(angle), 0.5 * wave, 2.6 * std::cos(angle))
-                        : glm::dvec3(60.0 * std::sin(angle), 12.0 + 6.0 * wave, 60.0 * std::cos(angle));
-    key.orientation.yaw.degrees = std::fmod(angle * 180.0 / std::numbers::pi + 90.0, 360.0);
-    show.camera.path.push_back(key);
-  }
-  show.projections["view"].shape = shape;
-  model::Output output;
-  output.sink = model::HeadlessOutput{};
-  output.width = width;
-  output.height = height;
-  output.viewports["all"] = {"view", model::Method::piecewise, 0, 0, 1, 1, 0};
-  show.outputs["main"] = output;
+  show.camera.loop = false;
+  show.camera.path.pop_back();
+  if (std::holds_alternative<model::Room>(content))
+    for (model::Keyframe& key : show.camera.path)
+      key.position = {key.position.x * room_scale, (key.position.y - 12.0) / 12.0,
+                      key.position.z * room_scale};
   return show;
 }
 
