@@ -9,10 +9,10 @@
 #include <optional>
 #include <set>
 
+#include "renderer/frame/fixed_programs.h"
 #include "renderer/frame/method_choice.h"
 #include "renderer/frame/realised.h"
 #include "renderer/frame/reference_view.h"
-#include "renderer/gl/shader.h"
 #include "renderer/passes/cubemap_pass.h"
 #include "renderer/passes/frame_block.h"
 #include "renderer/passes/gpu_pieces.h"
@@ -27,49 +27,6 @@ namespace cupola::frame {
 namespace {
 
 constexpr std::size_t upload_bytes_per_frame = 8u << 20;
-
-Device query_device() {
-  Device device;
-  const auto text = [](GLenum name) {
-    const GLubyte* words = glGetString(name);
-    return words ? std::string(reinterpret_cast<const char*>(words)) : std::string();
-  };
-  device.name = text(GL_RENDERER);
-  device.version = text(GL_VERSION);
-  for (const char* software : {"llvmpipe", "softpipe", "SWR"})
-    if (device.name.find(software) != std::string::npos) device.software = true;
-  device.max_samples = passes::clamp_samples(64);
-  GLfloat anisotropy = 1.0f;
-  if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic") ||
-      epoxy_has_gl_extension("GL_ARB_texture_filter_anisotropic"))
-    glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &anisotropy);
-  device.max_anisotropy = static_cast<int>(anisotropy);
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &device.max_texture);
-  return device;
-}
-
-/// The programs that do not depend on the scene.
-struct FixedPrograms {
-  gl::Program downsample, picture, piece_lines;
-  passes::PieceArea::Programs area;
-};
-
-model::Result<FixedPrograms> build_fixed() {
-  const gl::Stage fullscreen{GL_VERTEX_SHADER, "renderer/passes/fullscreen.vert.glsl"};
-  auto downsample = gl::build_program(
-      {"downsample", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/downsample.frag.glsl"}}, {}});
-  auto picture = gl::build_program(
-      {"picture", {fullscreen, {GL_FRAGMENT_SHADER, "renderer/passes/picture.frag.glsl"}}, {}});
-  auto piece_lines = passes::PieceLines::make_program();
-  auto area = passes::PieceArea::make_programs();
-  model::Problems problems;
-  for (const auto* result : {&downsample, &picture, &piece_lines})
-    if (!*result) problems.insert(problems.end(), result->error().begin(), result->error().end());
-  if (!area) problems.insert(problems.end(), area.error().begin(), area.error().end());
-  if (!problems.empty()) return tl::unexpected(problems);
-  return FixedPrograms{std::move(*downsample), std::move(*picture), std::move(*piece_lines),
-                       std::move(*area)};
-}
 
 } // namespace
 

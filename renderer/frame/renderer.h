@@ -9,19 +9,10 @@
 #include <vector>
 
 #include "configs/model/problem.h"
+#include "renderer/frame/device.h"
 #include "renderer/frame/stage.h"
 
 namespace cupola::frame {
-
-/// The driver, in words and limits.
-struct Device {
-  std::string name;    ///< GL_RENDERER
-  std::string version; ///< GL_VERSION
-  bool software = false;
-  int max_samples = 1;
-  int max_anisotropy = 1;
-  int max_texture = 0; ///< pixels along an edge
-};
 
 /// A finished picture: a GL_TEXTURE_2D, SRGB8_ALPHA8, GL's row 0 at the bottom. Valid until the next draw().
 struct Picture {
