@@ -289,6 +289,7 @@ struct Output {
 // ---- quality, control -----------------------------------------------------------------------------
 
 struct Quality {
+  bool automatic = false;           ///< samples, supersampling and anisotropy are chosen by frame time
   int samples = 1;                  ///< multisampling; clamped to what the driver has
   int supersampling = 1;            ///< k: every viewport is drawn k times as wide and high, then averaged
   int anisotropy = 1;               ///< of texture filtering; clamped to what the driver has

@@ -384,8 +384,16 @@ const Type& output_type() {
 const Type& quality_type() {
   static const Type type =
       Describe<Quality>("quality", "How carefully is rendered.")
-          .integer("samples", &Quality::samples, Unit::none, {1, 64}, Cost::rebuild,
-                   "Samples a pixel: multisampling, clamped to what the driver has; rays of the reference.")
+          .boolean("automatic", &Quality::automatic, Cost::rebuild,
+                   "Chooses samples, supersampling and anisotropy by the time that frames take: the best "
+                   "that hold "
+                   "frame_rate, or off-line the best there are. What is given for them does not count "
+                   "meanwhile, as "
+                   "limits neither.")
+          .integer(
+              "samples", &Quality::samples, Unit::none, {1, 64}, Cost::rebuild,
+              "Samples a pixel: multisampling, clamped to what the driver has; rays of the reference, with "
+              "automatic too.")
           .integer("supersampling", &Quality::supersampling, Unit::factor, {1, 8}, Cost::rebuild,
                    "Pictures are drawn so many times as wide and high, then averaged.")
           .integer("anisotropy", &Quality::anisotropy, Unit::factor, {1, 16}, Cost::rebuild,

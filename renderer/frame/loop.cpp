@@ -79,6 +79,7 @@ struct Loop::Impl {
   FrameTimes times;
   std::uint64_t frames = 0, late = 0;
   Nanoseconds started = 0;
+  Nanoseconds waited = 0; ///< at most: in the frame in progress, for a monitor
 
   std::thread thread;
 
@@ -173,6 +174,8 @@ struct Loop::Impl {
   bool frame() {
     const Nanoseconds begin = monotonic();
     const FrameStatistics drawn = renderer->draw(static_cast<double>(pacer.start() - started) * 1e-9);
+    const Nanoseconds done = monotonic();
+    waited = 0;
     if (model::Problems problems = renderer->take_problems(); !problems.empty()) {
       next.reset();
       hooks.failed(given->revision, problems);
@@ -194,6 +197,7 @@ struct Loop::Impl {
     publish(drawn, presented); // before anybody hears of the frame and asks
     hooks.shown(drawn.revision, frames);
     snapshots.serve(renderer->pictures(), drawn.revision, frames);
+    renderer->set_beside(static_cast<double>(monotonic() - done - waited) * 1e-6);
     pace(presented);
     return true;
   }
@@ -215,7 +219,9 @@ struct Loop::Impl {
         if (picture.output == name)
           entry.output->draw({picture.texture, picture.width, picture.height, frames + 1});
     for (auto& [name, entry] : running) {
+      const Nanoseconds begin = monotonic();
       entry.output->present();
+      if (entry.output->pace().refresh_hz > 0.0) waited += monotonic() - begin;
       model::Problems problems = entry.output->take_problems();
       if (problems.empty()) continue;
       for (model::Problem& problem : problems)

@@ -18,16 +18,23 @@ model::Problem too_large(std::string pointer, int limit, long found) {
           {}};
 }
 
-model::Problems check_sizes(const Stage& stage, const Device& device) {
+/// A cubemap of matched density grows with the picture; its plan knows the show's own supersampling alone.
+int cubemap_factor(const model::Show& show, const model::Quality& drawn) {
+  return show.quality.automatic && !show.quality.cubemap_size ? drawn.supersampling : 1;
+}
+
+model::Problems check_sizes(const Stage& stage, const Device& device, const model::Quality& quality) {
+  const int scale = quality.supersampling;
   model::Problems problems;
-  const int scale = stage.show->quality.supersampling;
   for (const plan::OutputPlan& output : stage.plan->outputs) {
     const long largest = static_cast<long>(std::max(output.width, output.height)) * scale;
     if (largest > device.max_texture)
       problems.push_back(too_large("/outputs/" + output.name + "/width", device.max_texture, largest));
   }
-  if (stage.plan->cubemap && stage.plan->cubemap->size > device.max_texture)
-    problems.push_back(too_large("/quality/cubemap_size", device.max_texture, stage.plan->cubemap->size));
+  if (!stage.plan->cubemap) return problems;
+  const long size = static_cast<long>(stage.plan->cubemap->size) * cubemap_factor(*stage.show, quality);
+  if (size > device.max_texture)
+    problems.push_back(too_large("/quality/cubemap_size", device.max_texture, size));
   return problems;
 }
 
@@ -43,8 +50,8 @@ void take_over_scene(Realised& made, const Realised* before) {
 }
 
 void make_outputs(Realised& made, const Realised* before) {
-  const model::Quality& quality = made.stage->show->quality;
-  const int samples = passes::clamp_samples(quality.samples);
+  const model::Quality& quality = made.quality;
+  const int samples = made.samples;
   for (const plan::OutputPlan& output : made.stage->plan->outputs) {
     if (before) {
       const auto old = before->outputs.find(output.name);
@@ -60,38 +67,48 @@ void make_outputs(Realised& made, const Realised* before) {
   }
 }
 
+plan::CubemapPlan enlarged(plan::CubemapPlan plan, int factor) {
+  plan.size *= factor;
+  for (plan::CubeFace& face : plan.faces)
+    face.crop = {face.crop.x * factor, face.crop.y * factor, face.crop.width * factor,
+                 face.crop.height * factor};
+  return plan;
+}
+
 void make_cubemap_target(Realised& made, const Realised* before) {
   const plan::Plan& plan = *made.stage->plan;
   if (!plan.cubemap) return;
-  const model::Quality& quality = made.stage->show->quality;
-  const int samples = passes::clamp_samples(quality.samples);
+  const model::Quality& quality = made.quality;
+  const int samples = made.samples;
+  made.cubemap_plan = enlarged(*plan.cubemap, cubemap_factor(*made.stage->show, quality));
+  const int size = made.cubemap_plan->size;
   const bool layered = quality.cubemap_single_pass && passes::layered_rendering_available();
   int matched = 1;
   for (const plan::OutputPlan& output : plan.outputs)
     for (const plan::ViewportPlan& viewport : output.viewports)
       if (plan::may_use_cubemap(viewport))
         matched = std::max(matched, plan::matched_cubemap_size(viewport.map, viewport.rect));
-  made.cubemap_style_scale = static_cast<float>(plan.cubemap->size) / static_cast<float>(matched);
-  if (before && before->cubemap && before->cubemap->size() == plan.cubemap->size &&
-      before->cubemap->samples() == samples && before->cubemap->layered() == layered &&
-      before->cubemap->mipmaps() == quality.cubemap_mipmaps) {
+  made.cubemap_style_scale = static_cast<float>(size) / static_cast<float>(matched);
+  if (before && before->cubemap && before->cubemap->size() == size && before->cubemap->samples() == samples &&
+      before->cubemap->layered() == layered && before->cubemap->mipmaps() == quality.cubemap_mipmaps) {
     made.cubemap = before->cubemap;
     return;
   }
-  made.cubemap =
-      std::make_shared<passes::CubemapTarget>(plan.cubemap->size, samples, layered, quality.cubemap_mipmaps);
+  made.cubemap = std::make_shared<passes::CubemapTarget>(size, samples, layered, quality.cubemap_mipmaps);
 }
 
 } // namespace
 
 model::Result<Realised> realise(std::shared_ptr<const Stage> stage, const Realised* before,
-                                const Device& device) {
-  if (model::Problems problems = check_sizes(*stage, device); !problems.empty())
+                                const Device& device, const model::Quality& quality) {
+  if (model::Problems problems = check_sizes(*stage, device, quality); !problems.empty())
     return tl::unexpected(problems);
   while (glGetError() != GL_NO_ERROR) {}
   Realised made;
   made.stage = std::move(stage);
-  made.anisotropy = std::min(made.stage->show->quality.anisotropy, device.max_anisotropy);
+  made.quality = quality;
+  made.anisotropy = std::min(quality.anisotropy, device.max_anisotropy);
+  made.samples = passes::clamp_samples(quality.samples);
   make_outputs(made, before);
   make_cubemap_target(made, before);
   take_over_scene(made, before);

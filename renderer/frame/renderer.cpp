@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "renderer/frame/automatic_quality.h"
 #include "renderer/frame/fixed_programs.h"
 #include "renderer/frame/method_choice.h"
 #include "renderer/frame/realised.h"
@@ -48,6 +49,9 @@ struct GpuView {
 };
 
 struct Renderer::Impl {
+  explicit Impl(RendererOptions given)
+      : options(std::move(given)) {}
+
   RendererOptions options;
   Device device = query_device();
   FixedPrograms fixed;
@@ -62,7 +66,9 @@ struct Renderer::Impl {
   gl::VertexArray empty_array = gl::VertexArray::make();
   gl::Buffer frame_block = gl::Buffer::make();
   std::optional<Realised> current, next;
-  MethodChoice choice; ///< for the viewports with method auto
+  AutomaticQuality quality{device, options.offline};
+  MethodChoice choice;                                ///< for the viewports with method auto
+  std::map<std::array<int, 3>, MethodChoice> choices; ///< for this work at other levels of quality
   std::shared_ptr<const Stage> waiting;
   model::Problems problems;
   std::vector<Picture> pictures;
@@ -71,6 +77,8 @@ struct Renderer::Impl {
 
   void take_waiting();
   void upload(double time);
+  void take_quality();
+  void go_on_with(Realised realised);
   [[nodiscard]] model::Method method_of(const plan::ViewportPlan& viewport) const;
   [[nodiscard]] bool trying() const;
   [[nodiscard]] bool wants_cubemap() const;
@@ -105,9 +113,8 @@ model::Result<std::unique_ptr<Renderer>> Renderer::make(RendererOptions options)
          {}});
   model::Result<FixedPrograms> fixed = build_fixed();
   if (!fixed) return tl::unexpected(fixed.error());
-  auto impl = std::make_unique<Impl>();
+  auto impl = std::make_unique<Impl>(std::move(options));
   impl->fixed = std::move(*fixed);
-  impl->options = std::move(options);
   glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
@@ -115,6 +122,7 @@ model::Result<std::unique_ptr<Renderer>> Renderer::make(RendererOptions options)
 
 const Device& Renderer::device() const { return impl_->device; }
 const std::vector<Picture>& Renderer::pictures() const { return impl_->pictures; }
+void Renderer::set_beside(double milliseconds) { impl_->quality.set_beside(milliseconds); }
 model::Problems Renderer::take_problems() { return std::exchange(impl_->problems, {}); }
 
 void Renderer::set_stage(std::shared_ptr<const Stage> stage) {
@@ -132,7 +140,11 @@ void Renderer::Impl::take_waiting() {
   if (!waiting) return;
   const Realised* before = current ? &*current : nullptr;
   if (next && next->stage->scene == waiting->scene) before = &*next;
-  model::Result<Realised> made = realise(std::exchange(waiting, nullptr), before, device);
+  const auto make = [&](const model::Quality& wanted) { return realise(waiting, before, device, wanted); };
+  const model::Quality wanted = quality.of(*waiting), least = AutomaticQuality::plainest(*waiting);
+  model::Result<Realised> made = make(wanted);
+  if (!made && wanted != least) made = make(least);
+  waiting = nullptr;
   if (!made) {
     problems.insert(problems.end(), made.error().begin(), made.error().end());
     return;
@@ -232,9 +244,40 @@ void Renderer::Impl::upload(double time) {
   if (!next->scene_ready) return;
   // At the start there is nothing better to show meanwhile; off-line, drawing waits.
   if (current && !options.offline && !references_answer(time)) return;
-  if (current && !same_work(*current->stage, *next->stage)) choice.restart();
-  current = std::move(*next);
+  if (current && same_work(*current->stage, *next->stage)) {
+    go_on_with(std::move(*next));
+  } else {
+    choice.restart();
+    choices.clear();
+    quality.restart(*next->stage);
+    current = std::move(*next);
+  }
   next.reset();
+}
+
+/// The same work, perhaps at another level of quality: what is quicker there may be another method, and is
+/// tried once.
+void Renderer::Impl::go_on_with(Realised realised) {
+  const auto key = [](const model::Quality& drawn) {
+    return std::array{drawn.anisotropy, drawn.samples, drawn.supersampling};
+  };
+  if (realised.quality != current->quality) {
+    choices[key(current->quality)] = choice;
+    choice = choices[key(realised.quality)];
+  }
+  current = std::move(realised);
+}
+
+/// The stage goes on with the quality that is chosen now.
+void Renderer::Impl::take_quality() {
+  const model::Quality wanted = quality.of(*current->stage);
+  if (wanted == current->quality) return;
+  model::Result<Realised> made = realise(current->stage, &*current, device, wanted);
+  if (!made) {
+    quality.refuse();
+    return;
+  }
+  go_on_with(std::move(*made));
 }
 
 passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, double time) {
@@ -270,7 +313,7 @@ passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, do
           static_cast<float>(show.camera.near),
           show.scene.style.kind,
           !lights.empty(),
-          device.software && show.quality.samples > 1,
+          device.software && current->samples > 1,
           show.debug.primitives};
 }
 
@@ -412,18 +455,20 @@ FrameStatistics Renderer::draw(double time) {
   impl_->drop_references();
   FrameStatistics statistics;
   if (!impl_->current) return statistics;
+  impl_->take_quality();
   const Realised& current = *impl_->current;
   const model::Show& show = *current.stage->show;
   const plan::CameraPose camera = plan::camera_at(show.camera, time);
 
   const bool trying = impl_->trying();
   if (trying) glFinish();
+  impl_->quality.begin(*current.stage);
   const auto start = std::chrono::steady_clock::now();
   passes::set_scene_state();
   const passes::FrameScene scene = impl_->pose_scene(camera, time);
   passes::DrawCounts counts;
   if (impl_->wants_cubemap())
-    counts += passes::draw_cubemap(impl_->pass, scene, *current.stage->plan->cubemap, *current.cubemap,
+    counts += passes::draw_cubemap(impl_->pass, scene, *current.cubemap_plan, *current.cubemap,
                                    glm::vec3(show.background), current.cubemap_style_scale);
   impl_->pictures.clear();
   for (const plan::OutputPlan& output : current.stage->plan->outputs)
@@ -433,6 +478,7 @@ FrameStatistics Renderer::draw(double time) {
     impl_->choice.record(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
+  impl_->quality.end(*current.stage, !trying && !impl_->next);
   for (const model::Problems& refused : {impl_->programs.take_problems(), impl_->lookup.take_problems()})
     impl_->problems.insert(impl_->problems.end(), refused.begin(), refused.end());
 
@@ -441,6 +487,8 @@ FrameStatistics Renderer::draw(double time) {
   statistics.drawn = counts.triangles;
   statistics.replicated = counts.pairs;
   statistics.vertex_bytes = current.scene->bytes() + counts.bytes;
+  statistics.quality = {current.anisotropy, current.samples, current.quality.supersampling};
+  statistics.automatic_quality = show.quality.automatic;
   statistics.uploading = impl_->next.has_value();
   return statistics;
 }

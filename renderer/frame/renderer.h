@@ -10,6 +10,7 @@
 
 #include "configs/model/problem.h"
 #include "renderer/frame/device.h"
+#include "renderer/frame/quality_choice.h"
 #include "renderer/frame/stage.h"
 
 namespace cupola::frame {
@@ -27,6 +28,8 @@ struct FrameStatistics {
   std::uint64_t drawn = 0;        ///< triangles sent to the rasteriser over all viewports
   std::uint64_t replicated = 0;   ///< (triangle, piece) pairs of all piecewise viewports
   std::uint64_t vertex_bytes = 0; ///< of all vertex and index buffers in use
+  QualityLevel quality;           ///< that it was drawn with, as the driver has it
+  bool automatic_quality = false; ///< chosen by /quality/automatic
   bool uploading = false;         ///< a newer stage is being realised beside this one
 };
 
@@ -58,6 +61,10 @@ public:
 
   /// Problems of the last stage that could not be realised (the old one goes on); empties the list.
   [[nodiscard]] model::Problems take_problems();
+
+  /// What a frame takes beside drawing, in milliseconds; waiting for a monitor is no work. /quality/automatic
+  /// counts it in from the next frame on.
+  void set_beside(double milliseconds);
 
   /// Draws all outputs at show time `time` (seconds). No stage yet: draws nothing, revision 0.
   FrameStatistics draw(double time);

@@ -103,6 +103,15 @@ struct ProgramTraits {
   static GLuint make() { return glCreateProgram(); }
   static void destroy(GLuint id) { glDeleteProgram(id); }
 };
+struct QueryTraits {
+  static constexpr GLenum identifier = GL_QUERY;
+  static GLuint make(GLenum target) {
+    GLuint id = 0;
+    glCreateQueries(target, 1, &id);
+    return id;
+  }
+  static void destroy(GLuint id) { glDeleteQueries(1, &id); }
+};
 using Buffer = Handle<BufferTraits>;
 using Texture = Handle<TextureTraits>;
 using Sampler = Handle<SamplerTraits>;
@@ -110,6 +119,7 @@ using Renderbuffer = Handle<RenderbufferTraits>;
 using Framebuffer = Handle<FramebufferTraits>;
 using VertexArray = Handle<VertexArrayTraits>;
 using Program = Handle<ProgramTraits>;
+using Query = Handle<QueryTraits>;
 
 /// A fence; owns its sync object.
 class Fence {

@@ -143,8 +143,13 @@ private:
     return made;
   }
 
+  /// Known beforehand: what /quality/automatic chooses, the renderer sees to.
+  [[nodiscard]] int supersampling() const {
+    return show_.quality.automatic ? 1 : show_.quality.supersampling;
+  }
+
   bool check_size(const std::string& pointer, const PixelRect& rect) {
-    const int factor = show_.quality.supersampling;
+    const int factor = supersampling();
     bool good = true;
     for (const auto& [key, pixels] : {std::pair{"width", rect.width}, {"height", rect.height}}) {
       if (pixels < 1) {
@@ -214,8 +219,7 @@ private:
   void add_cubemap() {
     int size = 0;
     each_cubemap_viewport([&](const ViewportPlan& viewport) {
-      size = std::max(
-          size, matched_cubemap_size(viewport.map, enlarged(viewport.rect, show_.quality.supersampling)));
+      size = std::max(size, matched_cubemap_size(viewport.map, enlarged(viewport.rect, supersampling())));
     });
     if (size == 0) return;
     if (show_.quality.cubemap_size) {

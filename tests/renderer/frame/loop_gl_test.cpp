@@ -136,6 +136,17 @@ TEST_CASE("frames are shown, counted and can be looked at") {
   CHECK_FALSE(run.loop->end().has_value());
 }
 
+TEST_CASE("what a frame takes beside drawing is told apart from drawing and from waiting") {
+  Running run(stage(1, 1.0));
+  tests::stand_in().milliseconds_a_frame = 50;
+  tests::stand_in().beside_ms = -1.0;
+  run.until([&] { return run.loop->status().frames > 5; });
+  const double slow = tests::stand_in().beside_ms;
+  CHECK(slow >= 0.0);
+  const double mean = run.loop->status().frame_mean_ms;
+  CHECK(slow < mean - 20.0); // most of a frame is drawing
+}
+
 TEST_CASE("a picture of an output that does not exist names the nearest one") {
   Running run(stage(1, 1.0));
   run.until_shown(1);

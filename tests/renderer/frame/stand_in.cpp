@@ -96,5 +96,6 @@ FrameStatistics Renderer::draw(double) {
 }
 
 const std::vector<Picture>& Renderer::pictures() const { return impl_->pictures; }
+void Renderer::set_beside(double milliseconds) { tests::stand_in().beside_ms = milliseconds; }
 
 } // namespace cupola::frame

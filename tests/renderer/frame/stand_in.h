@@ -12,6 +12,7 @@ struct StandIn {
   std::atomic<std::uint64_t> fails_at = 0;   ///< a stage of this revision cannot be realised
   std::atomic<int> milliseconds_a_frame = 0; ///< drawing takes at least so long
   std::atomic<int> alive = 0;                ///< renderers that exist
+  std::atomic<double> beside_ms = -1.0;      ///< what the loop said last that a frame takes beside drawing
 };
 StandIn& stand_in();
 
