@@ -56,6 +56,8 @@ model::Problems apply(const Options& options, model::Show& show) {
       problems.push_back(bad_option("--cubemap-size", "from 16 to 16384, or auto", options.cubemap_size));
     }
   }
+  if (options.samples > 0 || options.supersampling > 0 || options.anisotropy > 0)
+    show.quality.automatic = false;
   if (options.samples > 0) show.quality.samples = options.samples;
   if (options.supersampling > 0) show.quality.supersampling = options.supersampling;
   if (options.anisotropy > 0) show.quality.anisotropy = options.anisotropy;

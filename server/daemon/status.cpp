@@ -39,6 +39,11 @@ model::Json status_json(const frame::LoopStatus& status, const model::Problems& 
           {"triangles_drawn", status.last.drawn},
           {"replicated", status.last.replicated},
           {"vertex_bytes", status.last.vertex_bytes},
+          {"quality",
+           {{"automatic", status.last.automatic_quality},
+            {"anisotropy", status.last.quality.anisotropy},
+            {"samples", status.last.quality.samples},
+            {"supersampling", status.last.quality.supersampling}}},
           {"uploading", status.last.uploading},
           {"outputs", std::move(outputs)},
           {"problems", control::problems_json(problems)}};

@@ -63,6 +63,16 @@ class Render(unittest.TestCase):
             done = self.run_cupola("compare", self.folder / f"{method}.png", self.folder / "reference.png")
             self.assertGreater(float(re.match(r"PSNR: ([\d.]+) dB", done.stdout)[1]), 18)
 
+    def test_options_outrank_automatic_quality(self):
+        def picture(name, quality, *options):
+            self.show.write_text(json.dumps({**SHOW, "quality": quality}))
+            file = self.folder / name
+            self.render("--output", "wall", "-o", file, *options)
+            return file.read_bytes()
+        plain = picture("plain.png", {})
+        self.assertNotEqual(picture("automatic.png", {"automatic": True}), plain)
+        self.assertEqual(picture("told.png", {"automatic": True}, "--samples", "1"), plain)
+
     def test_frames_are_numbered(self):
         self.render("--output", "dome", "--frames", "3..5", "-o", self.folder / "frames")
         self.assertEqual(sorted(f.name for f in (self.folder / "frames").iterdir()),

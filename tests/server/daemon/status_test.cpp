@@ -17,6 +17,8 @@ frame::LoopStatus running() {
   status.late = 2;
   status.fps = 59.94;
   status.last.revision = 7;
+  status.last.automatic_quality = true;
+  status.last.quality = {16, 4, 2};
   status.outputs = {{"wall", "headless 640x380", 640, 380, 120, 0}, {"takes", "files", 64, 48, 100, 20}};
   return status;
 }
@@ -38,6 +40,8 @@ TEST_CASE("the status on the network has outputs by name and problems as every a
   const model::Json json = daemon::status_json(running(), {problem("a full one")});
   CHECK(json["shown_revision"] == 7);
   CHECK(json["late_frames"] == 2);
+  CHECK(json["quality"] ==
+        model::Json{{"automatic", true}, {"anisotropy", 16}, {"samples", 4}, {"supersampling", 2}});
   CHECK(json["outputs"]["takes"]["frames"] == 100);
   CHECK(json["outputs"]["takes"]["dropped"] == 20);
   REQUIRE(json["problems"].size() == 1);
