@@ -107,12 +107,18 @@ CUPOLA_FN float luminance(vec3 color) { return dot(color, vec3(0.2126f, 0.7152f,
 
 // ---- styles: all lengths in output pixels -------------------------------------------------------------------------
 
-/// How much of the pixel a triangle's edges cover. edge_px: distances of the pixel's centre to the three edges.
-/// width: of the whole line, of which each of the two triangles at an edge draws its half.
-CUPOLA_FN float wire_coverage(vec3 edge_px, float width) {
-  float nearest = min(edge_px.x, min(edge_px.y, edge_px.z));
-  float half_width = 0.5f * width;
-  return 1.0f - smoothstep(half_width - 0.5f, half_width + 0.5f, nearest);
+/// How much a line covers of a sample's square, which is `footprint` wide, at a distance from the line's middle:
+/// exact where the line is straight and runs along the square's sides.
+CUPOLA_FN float line_coverage(float distance, float half_width, float footprint) {
+  float half_print = 0.5f * footprint;
+  float inside = min(distance + half_print, half_width) - max(distance - half_print, -half_width);
+  return clamp(inside / footprint, 0.0f, 1.0f);
+}
+
+/// How much of a sample a triangle's edges cover. edge_px: distances of its place to the three edges. width: of the
+/// whole line, of which each of the two triangles at an edge draws its half.
+CUPOLA_FN float wire_coverage(vec3 edge_px, float width, float footprint) {
+  return line_coverage(min(edge_px.x, min(edge_px.y, edge_px.z)), 0.5f * width, footprint);
 }
 
 /// Solid wireframe: dark lines over a pale surface that keeps its shape by its luminance; lines fade with distance
@@ -123,24 +129,24 @@ CUPOLA_FN vec3 wireframe(float luma, float coverage, float distance, float cue) 
   return mix(fill, vec3(0.02f, 0.03f, 0.05f), coverage * strength);
 }
 
-/// One family of parallel strokes: coverage of the pixel at `across` (pixels across the strokes) and `along`.
-CUPOLA_FN float strokes(float across, float along, float spacing, float width) {
+/// One family of parallel strokes: coverage of the sample at `across` (pixels across the strokes) and `along`.
+CUPOLA_FN float strokes(float across, float along, float spacing, float width, float footprint) {
   float row = floor(across / spacing);
   float waver = 0.08f * spacing * sin(along * 0.045f + row * 2.4f);
   float offset = abs(across + waver - (row + 0.5f) * spacing);
-  float half_width = 0.5f * width;
-  return (1.0f - smoothstep(half_width - 0.5f, half_width + 0.5f, offset)) * clamp(width * 2.0f, 0.0f, 1.0f);
+  return line_coverage(offset, 0.5f * width, footprint);
 }
 
 /// Pen and ink: strokes that thicken with darkness, a second direction across them in the dark parts.
-/// pixel: position in the output; luma: linear luminance of the lit surface, 0 black to 1 white.
-CUPOLA_FN vec3 hatch(vec2 pixel, float luma, float spacing, float width) {
+/// pixel: position in the output; luma: linear luminance of the lit surface, 0 black to 1 white; footprint: of a
+/// sample.
+CUPOLA_FN vec3 hatch(vec2 pixel, float luma, float spacing, float width, float footprint) {
   float darkness = 1.0f - sqrt(clamp(luma, 0.0f, 1.0f));
   float u = (pixel.x + pixel.y) * 0.70710678f;
   float v = (pixel.x - pixel.y) * 0.70710678f;
   float first = clamp((darkness - 0.12f) * 2.0f, 0.0f, 1.0f);
   float second = clamp((darkness - 0.45f) * 2.4f, 0.0f, 1.0f);
-  float ink = strokes(u, v, spacing, width * first * 1.6f);
-  ink = max(ink, strokes(v, u, spacing, width * second * 1.6f));
+  float ink = strokes(u, v, spacing, width * first * 1.6f, footprint);
+  ink = max(ink, strokes(v, u, spacing, width * second * 1.6f, footprint));
   return mix(vec3(0.92f, 0.89f, 0.82f), vec3(0.03f, 0.03f, 0.06f), ink);
 }

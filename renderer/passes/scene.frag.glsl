@@ -143,14 +143,15 @@ void main() {
 #endif
 
 #ifdef CUPOLA_HATCHING
-  color = hatch(gl_FragCoord.xy / style_scale, luminance(color), frame.style.y, frame.style.x);
+  color = hatch(gl_FragCoord.xy / style_scale, luminance(color), frame.style.y, frame.style.x, 1.0 / style_scale);
 #endif
 #ifdef CUPOLA_WIREFRAME
-  color = wireframe(luminance(color), wire_coverage(edge_pixels(), frame.style.x), surface.distance, frame.style.z);
+  color = wireframe(luminance(color), wire_coverage(edge_pixels(), frame.style.x, 1.0 / style_scale),
+                    surface.distance, frame.style.z);
 #endif
 #ifdef CUPOLA_PRIMITIVES
   const float primitive_width = 2.5; // output pixels
-  color = mix(color, vec3(1.0), wire_coverage(edge_pixels(), primitive_width));
+  color = mix(color, vec3(1.0), wire_coverage(edge_pixels(), primitive_width, 1.0 / style_scale));
 #endif
   out_color = vec4(color, surface.alpha);
 }

@@ -244,12 +244,12 @@ glm::vec4 surface_color(const World& world, const Shading& how, const SeenTriang
 
   const auto width = static_cast<float>(how.style.line_width);
   if (how.style.kind == model::StyleKind::hatching)
-    color =
-        shading::hatch(pixel, shading::luminance(color), static_cast<float>(how.style.line_spacing), width);
+    color = shading::hatch(pixel, shading::luminance(color), static_cast<float>(how.style.line_spacing),
+                           width, how.sample_width);
   if (how.style.kind == model::StyleKind::wireframe)
-    color =
-        shading::wireframe(shading::luminance(color), shading::wire_coverage(edge_pixels(crossing), width),
-                           surface.distance, static_cast<float>(how.style.line_fade));
+    color = shading::wireframe(shading::luminance(color),
+                               shading::wire_coverage(edge_pixels(crossing), width, how.sample_width),
+                               surface.distance, static_cast<float>(how.style.line_fade));
   return {color,
           material.alpha_mode == content::AlphaMode::blend ? std::clamp(surface.alpha, 0.0f, 1.0f) : 1.0f};
 }

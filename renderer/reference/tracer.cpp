@@ -106,6 +106,17 @@ RTCGeometry make_geometry(RTCDevice device, const std::vector<content::Vertex>& 
   return geometry;
 }
 
+/// The part of the viewport that is traced, in its own pixels.
+Rect traced(const Request& request, const Picture& picture) {
+  const Rect& rect = request.rect;
+  const bool all = request.window.width <= 0 || request.window.height <= 0;
+  const Rect window = all ? rect : request.window;
+  const int left = std::max({0, rect.x, window.x}), top = std::max({0, rect.y, window.y});
+  const int right = std::min({picture.width, rect.x + rect.width, window.x + window.width});
+  const int bottom = std::min({picture.height, rect.y + rect.height, window.y + window.height});
+  return {left - rect.x, top - rect.y, std::max(right - left, 0), std::max(bottom - top, 0)};
+}
+
 /// A viewport's pixels and their rays.
 class Camera {
 public:
@@ -287,7 +298,8 @@ bool Tracer::render(const Request& request, Picture& picture) const {
   shading.sample_width =
       static_cast<float>(1.0 / std::sqrt(static_cast<double>(std::max(request.samples, 1))));
 
-  const int across = (request.rect.width + tile - 1) / tile, down = (request.rect.height + tile - 1) / tile;
+  const Rect part = traced(request, picture);
+  const int across = (part.width + tile - 1) / tile, down = (part.height + tile - 1) / tile;
   std::mutex reporting;
   int done = 0;
   bool complete = true;
@@ -298,12 +310,10 @@ bool Tracer::render(const Request& request, Picture& picture) const {
       return;
     }
     SeenTriangles seen;
-    const int left = number % across * tile, top = number / across * tile;
-    for (int y = top; y < std::min(top + tile, request.rect.height); ++y)
-      for (int x = left; x < std::min(left + tile, request.rect.width); ++x) {
-        const int column = request.rect.x + x, row = request.rect.y + y;
-        if (column < 0 || row < 0 || column >= picture.width || row >= picture.height) continue;
-        glm::vec4& target = picture.at(column, row);
+    const int left = part.x + number % across * tile, top = part.y + number / across * tile;
+    for (int y = top; y < std::min(top + tile, part.y + part.height); ++y)
+      for (int x = left; x < std::min(left + tile, part.x + part.width); ++x) {
+        glm::vec4& target = picture.at(request.rect.x + x, request.rect.y + y);
         target = impl_->pixel(request, camera, shading, seen, x, y, target, picture.height);
       }
     const std::lock_guard lock(reporting);

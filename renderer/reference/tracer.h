@@ -32,6 +32,7 @@ struct Request {
   model::Scene scene;         ///< sun, sky, fog and style; its content is not looked at
   glm::dvec3 background{0.0}; ///< linear, where nothing is hit
   Rect rect;
+  Rect window{}; ///< pixels of the picture that are traced, the others stay as they are; empty: all of rect
   int samples = default_samples;             ///< rays a pixel, at least 1
   int threads = 0;                           ///< 0: one per core
   std::function<void(double)> progress{};    ///< share done, 0 to 1, rising; called by one thread at a time

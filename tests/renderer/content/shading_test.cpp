@@ -131,20 +131,35 @@ TEST_CASE("punctual lights fall off as KHR_lights_punctual says") {
   CHECK(spot_attenuation(vec3(0.8f, 0.6f, 0), shines, 0.9f, 0.8f) == 0.0f);
 }
 
-TEST_CASE("a wire is as wide as asked, half of it on each side") {
-  const float width = 3.0f;
-  float covered = 0.0f;
-  for (float d = 0.005f; d < 6.0f; d += 0.01f) covered += 0.01f * wire_coverage(vec3(d, 9, 9), width);
-  CHECK(covered == doctest::Approx(width / 2).epsilon(0.01));
-  CHECK(wire_coverage(vec3(0.0f, 9, 9), width) == 1.0f);
-  CHECK(wire_coverage(vec3(9, 9, 2.1f), width) == 0.0f);
+TEST_CASE("a wire is as wide as asked, half of it on each side, however large the samples are") {
+  for (const float width : {0.4f, 1.2f, 3.0f})
+    for (const float footprint : {0.125f, 0.5f, 1.0f}) {
+      CAPTURE(width);
+      CAPTURE(footprint);
+      float covered = 0.0f;
+      for (float d = 0.005f; d < 6.0f; d += 0.01f)
+        covered += 0.01f * wire_coverage(vec3(d, 9, 9), width, footprint);
+      CHECK(covered == doctest::Approx(width / 2).epsilon(0.02));
+      CHECK(wire_coverage(vec3(0.0f, 9, 9), width, footprint) ==
+            doctest::Approx(std::min(width / footprint, 1.0f)));
+      CHECK(wire_coverage(vec3(9, 9, (width + footprint) / 2 + 0.01f), width, footprint) == 0.0f);
+    }
+}
+
+TEST_CASE("one sample covers what many small ones in its place do") {
+  for (float d = 0.0f; d < 2.0f; d += 0.11f) {
+    float mean = 0.0f;
+    for (int i = 0; i < 64; ++i)
+      mean += wire_coverage(vec3(std::abs(d + (i + 0.5f) / 64.0f - 0.5f), 9, 9), 1.2f, 1.0f / 64.0f) / 64.0f;
+    CHECK(wire_coverage(vec3(d, 9, 9), 1.2f, 1.0f) == doctest::Approx(mean).epsilon(0.02));
+  }
 }
 
 TEST_CASE("hatching puts more ink where it is darker, none where it is bright") {
   const auto ink = [](float luma) {
     float sum = 0.0f;
     for (int y = 0; y < 70; ++y)
-      for (int x = 0; x < 70; ++x) sum += luminance(hatch(vec2(x + 0.5f, y + 0.5f), luma, 7.0f, 1.2f));
+      for (int x = 0; x < 70; ++x) sum += luminance(hatch(vec2(x + 0.5f, y + 0.5f), luma, 7.0f, 1.2f, 1.0f));
     return 1.0f - sum / 4900.0f;
   };
   const float paper = ink(1.0f);

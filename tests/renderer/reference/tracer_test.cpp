@@ -196,6 +196,23 @@ TEST_CASE("a viewport fills its rectangle, upright, and leaves the rest alone") 
   check_color(picture.at(4, 6), glm::vec3(0.1f));
 }
 
+TEST_CASE("a window is traced as it is in the whole picture, the rest of which stays") {
+  SmallScene scene;
+  scene.quad(scene.plain(red), {glm::vec3{-9, -9, -2}, {0.75, -9, -2}, {0.75, 9, -2}, {-9, 9, -2}});
+  Request asked = square(32, 4);
+  const Picture whole = render(scene, asked);
+  for (const Rect window : {Rect{17, 3, 6, 20}, Rect{-5, 20, 90, 90}, Rect{40, 40, 5, 5}}) {
+    asked.window = window;
+    const Picture part = render(scene, asked);
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) {
+        const bool inside =
+            x >= window.x && x < window.x + window.width && y >= window.y && y < window.y + window.height;
+        CHECK(part.at(x, y) == (inside ? whole.at(x, y) : glm::vec4(0.0f)));
+      }
+  }
+}
+
 TEST_CASE("outside a fisheye's circle the picture stays as it was; on its rim it counts by its share") {
   SmallScene scene;
   const int material = scene.plain(red, content::AlphaMode::opaque, true);
