@@ -68,7 +68,7 @@ void add_bench(CLI::App& app, ExitCode& exit_code) {
   bench->require_subcommand(1);
   struct Options {
     bool json = false, quick = false;
-    std::string pictures, plot;
+    std::string pictures, plot, subject;
   };
   auto options = std::make_shared<Options>();
   const auto add = [&](const char* name, const char* words, auto run) {
@@ -84,12 +84,15 @@ void add_bench(CLI::App& app, ExitCode& exit_code) {
       [](const Options& o) { return bench_table2(o.json, o.quick); });
   add("fisheye", "A dome of 180°: pieces, cubemap and auto, small and large cities.",
       [](const Options& o) { return bench_fisheye(o.json, o.quick); });
-  add("quality", "How near both methods come to the picture by rays.",
-      [](const Options& o) {
-        return bench_quality({o.json, o.quick, o.pictures});
-      })
-      ->add_option("--pictures", options->pictures, "Close-ups go to this folder")
-      ->type_name("DIR");
+  CLI::App* quality =
+      add("quality", "How near both methods come to the picture by rays.", [](const Options& o) {
+        return bench_quality({o.json, o.quick, o.pictures, o.subject});
+      });
+  quality->add_option("--pictures", options->pictures, "Close-ups go to this folder")->type_name("DIR");
+  quality
+      ->add_option("--subject", options->subject, "One alone, as cylinder-city, without the overall ratios")
+      ->check(CLI::IsMember(
+          {"cylinder-city", "cylinder-text", "cylinder-wireframe", "cylinder-hatching", "fisheye-city"}));
   add("scaling", "How time grows with triangles, pieces, pixels and outputs.",
       [](const Options& o) {
         return bench_scaling({o.json, o.quick, o.plot});

@@ -30,6 +30,7 @@ int bench_fisheye(bool as_json, bool quick);
 struct QualityOptions {
   bool json = false, quick = false;
   std::string pictures; ///< folder for close-ups; "": none
+  std::string subject;  ///< as "cylinder-city", this one alone; "": all
 };
 /// Both methods against rays: at matched density, at equal time, against any cubemap. Progress on standard
 /// error.

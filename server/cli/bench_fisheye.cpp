@@ -78,8 +78,11 @@ private:
   std::optional<Timing> measure(const Way& way, int size, int triangles) {
     model::Show show = dome_show(size, triangles);
     viewport_of(show).method = way.method;
-    if (way.cubemap_scale > 0.0)
-      show.quality.cubemap_size = static_cast<int>(std::lround(matched_ * way.cubemap_scale / 8.0)) * 8;
+    if (way.cubemap_scale > 0.0) {
+      const int matched =
+          plan::matched_cubemap_size(projection::make_map(show.projections["view"], 1.0), {0, 0, size, size});
+      show.quality.cubemap_size = static_cast<int>(std::lround(matched * way.cubemap_scale / 8.0)) * 8;
+    }
     const bool many = triangles > 1'000'000;
     Frames frames{double{poses}, poses, quick_ ? 1 : (many ? 2 : 5), 0};
     if (way.method == model::Method::automatic) frames.before = frame::method_trial_frames;
@@ -87,7 +90,6 @@ private:
     const auto timed = time_show(renderer_, show, scene_, frames);
     if (!timed) return std::nullopt;
     const auto& [timing, stage] = *timed;
-    if (stage->plan->cubemap && way.cubemap_scale == 0.0) matched_ = stage->plan->cubemap->size;
     const plan::ViewportPlan& viewport = stage->plan->outputs.front().viewports.front();
     report.rows.push_back(
         {{"triangles", triangles},
@@ -105,7 +107,6 @@ private:
   frame::Renderer& renderer_;
   bool as_json_, quick_;
   std::shared_ptr<const content::Scene> scene_;
-  int matched_ = 1304; ///< edge of the matched cubemap of 2048²; corrected by the first stage that has one
   double worst_auto_ = 10.0;
 };
 

@@ -34,12 +34,20 @@ struct QualityWorld {
   std::unique_ptr<reference::Tracer> tracer;
 };
 
+/// Parts of a picture, which stand for all of it.
+struct Tiles {
+  int edge = 0;             ///< pixels; 0: one tile, `window`
+  int share = 1;            ///< one tile of so many is looked at, others at every pose
+  reference::Rect window{}; ///< what the tiles cover; empty: the picture
+};
+
 class QualityCase {
 public:
-  /// `show`: one output, "main", with one viewport, "all"; a camera path with a pose at each whole second
-  /// from 0 on, `poses` of them. Traces the reference of each. The world outlives the case.
-  /// Where the show cannot be planned the problems are printed, and there are no poses.
-  QualityCase(model::Show show, int poses, int reference_samples, const QualityWorld& world);
+  /// Compares the tiles alone. `show`: one output, "main", with one viewport, "all"; a camera path with a
+  /// pose at each whole second from 0 on, `poses` of them. Traces the reference of each. The world outlives
+  /// the case. Where the show cannot be planned the problems are printed, and there are no poses.
+  QualityCase(model::Show show, int poses, int reference_samples, const QualityWorld& world,
+              const Tiles& tiles);
 
   /// Over `poses` of the poses, evenly spread. `frames`: so many of each pose after the first; the least time
   /// of these counts. False, with the problems printed, when something cannot be drawn.
@@ -48,6 +56,7 @@ public:
 
   [[nodiscard]] int matched_size() const { return matched_; }
   [[nodiscard]] int poses() const { return static_cast<int>(references_.size()); }
+  /// The tiles of a pose, one below the other, with unseen pixels (alpha 0) between.
   [[nodiscard]] const outputs::ByteImage& reference(int pose) const {
     return references_[static_cast<std::size_t>(pose)];
   }
@@ -57,9 +66,11 @@ public:
   }
 
 private:
+  [[nodiscard]] std::vector<reference::Rect> tiles_of(int pose) const;
+
   model::Show show_;
   const QualityWorld& world_;
-  bool mask_;
+  Tiles tiles_;
   int matched_ = 0;
   std::vector<outputs::ByteImage> references_, drawn_;
 };
