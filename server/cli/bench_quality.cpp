@@ -295,7 +295,7 @@ private:
   /// Six perspectives round the horizon, against the band of the wall with the same directions.
   bool plain(const model::Content& content, const QualityWorld& world) {
     say("plain perspectives over the same directions: rays");
-    constexpr int views = 6, band_height = band_width * wall_height / wall_width;
+    constexpr int views = 12, band_height = band_width * wall_height / wall_width;
     const double focal = band_width / (2.0 * std::numbers::pi); // pixels a radian, as the wall's horizon
     const int size = static_cast<int>(std::ceil(2.0 * focal * std::tan(std::numbers::pi / views)));
     const double fov = 2.0 * std::atan(size / 2.0 / focal) * 180.0 / std::numbers::pi;
