@@ -49,6 +49,8 @@ struct Gltf {
   std::string file;      ///< relative to the show file
   std::string animation; ///< name of the animation to play; "" plays the first, if any
   double scale = 1.0;
+  Angle point_size{0.1}; ///< diameter of points as seen from the eye
+  Angle line_width{0.1}; ///< of lines as seen from the eye
   bool operator==(const Gltf&) const = default;
 };
 

@@ -57,6 +57,10 @@ std::vector<Alternative> contents() {
                  "Name of the animation to play; empty plays the first.")
            .number("scale", &Gltf::scale, Unit::factor, Range{1e-4, 1e4}, Cost::rebuild,
                    "Scales the whole scene.")
+           .number("point_size", &Gltf::point_size, Unit::degree, Range{0.001, 45}, Cost::rebuild,
+                   "Diameter of points as seen from the eye, however far they are.")
+           .number("line_width", &Gltf::line_width, Unit::degree, Range{0.001, 45}, Cost::rebuild,
+                   "Width of lines as seen from the eye, however far they are.")
            .share()},
   };
 }

@@ -24,6 +24,8 @@ public:
       : document_(document)
       , report_(report) {
     rig_.scale = static_cast<float>(wish.scale);
+    rig_.point_size = static_cast<float>(wish.point_size.radians());
+    rig_.line_width = static_cast<float>(wish.line_width.radians());
     gltf::read_nodes(document, rig_, report);
     if (!report.failed()) gltf::read_skins(document, rig_, report);
     if (!report.failed()) gltf::read_animation(document, wish.animation, rig_, report);
@@ -44,8 +46,7 @@ public:
       if (shown[node]) collect(node);
     collect_lights(shown);
     if (report_.failed()) return;
-    if (placed_.empty())
-      report_.warning("/scenes", "a mesh of triangles in the scene", "none", "Nothing is shown.");
+    if (placed_.empty()) report_.warning("/scenes", "a mesh in the scene", "none", "Nothing is shown.");
     fill(scene);
   }
 
@@ -54,6 +55,9 @@ private:
     RigPart part;
     const gltf::Primitive* primitive;
     bool moves;
+    std::size_t material = 0;
+
+    [[nodiscard]] bool is_stroke() const { return part.mesh->form != Form::triangles; }
   };
 
   const std::vector<gltf::Primitive>& primitives(std::size_t mesh) {
@@ -80,10 +84,10 @@ private:
         report_.warning(path("nodes", node, "/skin"), "a mesh with joints and weights", "one without",
                         "It does not bend.");
       }
-      if (!budget_.take(primitive.mesh->vertices.size(), primitive.triangles.size() / 3, 0,
+      if (!budget_.take(primitive.mesh->placed_vertices(), primitive.triangles.size() / 3, 0,
                         path("nodes", node), report_))
         return;
-      placed_.push_back({std::move(part), &primitive, false});
+      placed_.push_back({std::move(part), &primitive, false, primitive.material});
     }
   }
 
@@ -104,7 +108,7 @@ private:
     return last;
   }
 
-  /// Which parts change with time; answers whether anything does, lights included.
+  /// Which parts change, with time or with the eye; answers whether anything does, lights included.
   bool find_movement() {
     const std::vector<bool> nodes = gltf::moving_nodes(rig_);
     std::vector<bool> morphing(rig_.nodes.size(), false);
@@ -119,33 +123,56 @@ private:
         for (const std::size_t joint : rig_.skins[static_cast<std::size_t>(placed.part.skin)].joints)
           placed.moves = placed.moves || nodes[joint];
       }
+      placed.moves = placed.moves || placed.is_stroke();
       any = any || placed.moves;
     }
     for (const RigLight& light : rig_.lights) any = any || nodes[light.node];
     return any;
   }
 
+  /// Points and lines have no tangents and no backs, and without normals no light falls on them [glTF 2.0,
+  /// 3.7.2.1]: they get variants of their materials.
+  void make_stroke_materials(Scene& scene) {
+    std::map<std::pair<std::size_t, bool>, std::size_t> variants;
+    for (Placed& placed : placed_) {
+      if (!placed.is_stroke()) continue;
+      const auto [variant, is_new] =
+          variants.try_emplace({placed.material, placed.primitive->lit}, scene.materials.size());
+      placed.material = variant->second;
+      if (!is_new) continue;
+      Material made = scene.materials[variant->first.first];
+      made.double_sided = true;
+      made.normal_map = {};
+      if (!placed.primitive->lit) {
+        made.unlit = true;
+        made.metallic_roughness_map = made.occlusion_map = {};
+      }
+      scene.materials.push_back(std::move(made));
+    }
+  }
+
   void fill(Scene& scene) {
+    make_stroke_materials(scene);
     const bool anything_moves = find_movement();
     std::stable_partition(placed_.begin(), placed_.end(), [](const Placed& placed) { return !placed.moves; });
     const RigState state = rig_state(rig_, 0.0);
     std::size_t vertices = 0;
-    for (const Placed& placed : placed_) vertices += placed.part.mesh->vertices.size();
+    for (const Placed& placed : placed_) vertices += placed.part.mesh->placed_vertices();
     scene.geometry.vertices.resize(vertices);
     std::vector<std::vector<std::uint32_t>> triangles(scene.materials.size());
     std::size_t first = 0;
     bool finite = true;
     for (Placed& placed : placed_) {
       placed.part.first_vertex = first;
-      place_part(rig_, state, placed.part, scene.geometry.vertices.data() + first);
-      const bool mirrored = is_mirrored(rig_, state, placed.part);
+      place_part(rig_, state, placed.part, glm::vec3(0.0f), scene.geometry.vertices.data() + first);
+      const bool mirrored = !placed.is_stroke() && is_mirrored(rig_, state, placed.part);
       const auto& corners = placed.primitive->triangles;
-      auto& list = triangles[placed.primitive->material];
+      auto& list = triangles[placed.material];
       for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
         for (const std::size_t k :
              {std::size_t{0}, std::size_t{mirrored ? 2U : 1U}, std::size_t{mirrored ? 1U : 2U}})
           list.push_back(static_cast<std::uint32_t>(first) + corners[i + k]);
-      const std::size_t end = first + placed.part.mesh->vertices.size();
+      const std::size_t end = first + placed.part.mesh->placed_vertices();
       for (std::size_t i = first; i < end; ++i) {
         const glm::vec3& p = scene.geometry.vertices[i].position;
         finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);

@@ -189,6 +189,7 @@ Material factors(const tinygltf::Material& from, const std::string& at, Report& 
   made.alpha_cutoff = static_cast<float>(from.alphaCutoff);
   made.double_sided = from.doubleSided;
   made.unlit = from.extensions.count("KHR_materials_unlit") > 0;
+  if (made.unlit) made.emissive = glm::vec3(0.0f);
   return made;
 }
 

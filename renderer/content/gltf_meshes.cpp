@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <initializer_list>
+#include <numeric>
 #include <utility>
 
 namespace cupola::content::gltf {
@@ -28,19 +29,24 @@ public:
     count_ = document_.model.accessors[static_cast<std::size_t>(position)].count;
     const std::size_t corners =
         from_.indices < 0 ? count_ : document_.model.accessors[static_cast<std::size_t>(from_.indices)].count;
-    const bool flat = accessor("NORMAL") < 0;
-    const std::size_t vertices = flat ? std::max(count_, corners * 3) : count_;
+    RigMesh mesh;
+    mesh.form = form();
+    const bool triangles = mesh.form == Form::triangles;
+    made.lit = triangles || accessor("NORMAL") >= 0;
+    mesh.flat = triangles && accessor("NORMAL") < 0;
+    const std::size_t vertices = mesh.flat ? std::max(count_, corners * 3) : count_;
     if (!budget_.take(vertices, corners, vertices * from_.targets.size() * 2, at_, report_))
       return std::nullopt;
-    if (!triangles(made.triangles)) return std::nullopt;
-    RigMesh mesh;
-    mesh.flat = flat;
+    const auto numbers = read_corners();
+    if (!numbers || !(triangles ? read_triangles(*numbers, made.triangles) : read_strokes(*numbers, mesh)))
+      return std::nullopt;
     mesh.vertices.resize(count_);
     fill(mesh, materials[made.material]);
     skinning(mesh, made.most_joint);
     targets(mesh);
     if (report_.failed()) return std::nullopt;
-    if (flat) unshare(mesh, made.triangles);
+    if (mesh.flat) unshare(mesh, made.triangles);
+    if (!triangles && !place_strokes(mesh, made.triangles)) return std::nullopt;
     made.mesh = std::make_shared<RigMesh>(std::move(mesh));
     return made;
   }
@@ -164,26 +170,74 @@ private:
     }
   }
 
-  bool triangles(std::vector<std::uint32_t>& out) {
-    std::vector<std::uint32_t> corners;
-    if (from_.indices < 0) {
-      corners.resize(count_);
-      for (std::size_t i = 0; i < count_; ++i) corners[i] = static_cast<std::uint32_t>(i);
-    } else {
-      auto read = read_integers(document_, from_.indices, report_);
-      if (!read) return false;
-      if (document_.model.accessors[static_cast<std::size_t>(from_.indices)].type != TINYGLTF_TYPE_SCALAR) {
-        report_.invalid(at_ + "/indices", "an accessor of type SCALAR", "another type");
-        return false;
-      }
-      corners = std::move(*read);
-      const auto most = std::max_element(corners.begin(), corners.end());
-      if (most != corners.end() && *most >= count_) {
-        report_.invalid(at_ + "/indices", "indices below the " + std::to_string(count_) + " vertices",
-                        std::to_string(*most));
-        return false;
-      }
+  [[nodiscard]] Form form() const {
+    switch (from_.mode) {
+    case TINYGLTF_MODE_POINTS:
+      return Form::points;
+    case TINYGLTF_MODE_LINE:
+    case TINYGLTF_MODE_LINE_LOOP:
+    case TINYGLTF_MODE_LINE_STRIP:
+      return Form::lines;
+    default:
+      return Form::triangles;
     }
+  }
+
+  /// Numbers of the vertices in the order in which the primitive uses them.
+  std::optional<std::vector<std::uint32_t>> read_corners() {
+    if (from_.indices < 0) {
+      std::vector<std::uint32_t> corners(count_);
+      std::iota(corners.begin(), corners.end(), 0U);
+      return corners;
+    }
+    auto corners = read_integers(document_, from_.indices, report_);
+    if (!corners) return std::nullopt;
+    if (document_.model.accessors[static_cast<std::size_t>(from_.indices)].type != TINYGLTF_TYPE_SCALAR) {
+      report_.invalid(at_ + "/indices", "an accessor of type SCALAR", "another type");
+      return std::nullopt;
+    }
+    const auto most = std::max_element(corners->begin(), corners->end());
+    if (most != corners->end() && *most >= count_) {
+      report_.invalid(at_ + "/indices", "indices below the " + std::to_string(count_) + " vertices",
+                      std::to_string(*most));
+      return std::nullopt;
+    }
+    return corners;
+  }
+
+  /// A problem unless the corners are whole groups of `size`.
+  bool whole(std::size_t corners, std::size_t size, const char* expected) {
+    if (corners % size == 0) return true;
+    report_.invalid(at_ + (from_.indices < 0 ? "/attributes/POSITION" : "/indices"), expected,
+                    std::to_string(corners) + " corners");
+    return false;
+  }
+
+  bool read_strokes(const std::vector<std::uint32_t>& corners, RigMesh& mesh) {
+    const std::size_t count = corners.size();
+    if (mesh.form == Form::points) {
+      mesh.strokes = corners;
+      return true;
+    }
+    const bool separate = from_.mode == TINYGLTF_MODE_LINE;
+    if (separate && !whole(count, 2, "two ends a line")) return false;
+    const auto add = [&](std::size_t a, std::size_t b) { // none without length
+      if (corners[a] != corners[b]) mesh.strokes.insert(mesh.strokes.end(), {corners[a], corners[b]});
+    };
+    for (std::size_t i = 0; i + 1 < count; i += separate ? 2 : 1) add(i, i + 1);
+    if (from_.mode == TINYGLTF_MODE_LINE_LOOP && count > 2) add(count - 1, 0);
+    return true;
+  }
+
+  bool place_strokes(const RigMesh& mesh, std::vector<std::uint32_t>& triangles) {
+    const std::size_t count = mesh.stroke_count();
+    if (!budget_.take(mesh.placed_vertices(), count * stroke_triangles(mesh.form), 0, at_, report_))
+      return false;
+    triangles = stroke_corners(mesh.form, count);
+    return true;
+  }
+
+  bool read_triangles(const std::vector<std::uint32_t>& corners, std::vector<std::uint32_t>& out) {
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) { // none without area
       if (corners[a] != corners[b] && corners[b] != corners[c] && corners[a] != corners[c])
         out.insert(out.end(), {corners[a], corners[b], corners[c]});
@@ -194,11 +248,7 @@ private:
     } else if (from_.mode == TINYGLTF_MODE_TRIANGLE_FAN) {
       for (std::size_t i = 1; i + 1 < count; ++i) add(i, i + 1, 0);
     } else {
-      if (count % 3 != 0) {
-        report_.invalid(at_ + (from_.indices < 0 ? "/attributes/POSITION" : "/indices"),
-                        "three corners a triangle", std::to_string(count) + " corners");
-        return false;
-      }
+      if (!whole(count, 3, "three corners a triangle")) return false;
       for (std::size_t i = 0; i + 2 < count; i += 3) add(i, i + 1, i + 2);
     }
     return true;
@@ -266,11 +316,6 @@ std::optional<std::vector<Primitive>> read_mesh(const Document& document, std::s
     if (from.targets.size() != mesh.primitives.front().targets.size())
       report.invalid(at + "/targets", "as many morph targets as the mesh's first primitive has",
                      std::to_string(from.targets.size()));
-    if (mode < TINYGLTF_MODE_TRIANGLES) {
-      report.warning(at + "/mode", "triangles", mode == TINYGLTF_MODE_POINTS ? "points" : "lines",
-                     "They are left out.");
-      continue;
-    }
     PrimitiveReader reader(document, from, at, budget, report);
     if (reader.accessor("POSITION") < 0) {
       report.warning(at + "/attributes", "POSITION", "none", "The primitive is left out.");

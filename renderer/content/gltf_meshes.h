@@ -1,4 +1,4 @@
-// Primitives of a glTF file as triangle lists. Private to the glTF reader.
+// Primitives of a glTF file as triangle lists, points and lines included. Private to the glTF reader.
 #pragma once
 
 #include <memory>
@@ -12,9 +12,10 @@ namespace cupola::content::gltf {
 
 struct Primitive {
   std::shared_ptr<const RigMesh> mesh;
-  std::vector<std::uint32_t> triangles; ///< into the mesh's vertices
+  std::vector<std::uint32_t> triangles; ///< into the vertices that the mesh places
   std::size_t material = 0;             ///< of the scene
   std::uint32_t most_joint = 0;         ///< largest joint that any vertex follows
+  bool lit = true;                      ///< false: points or lines without normals
 };
 
 /// What a scene may hold; counted while reading, so that no file can ask for more memory than this allows.
@@ -31,8 +32,7 @@ struct MaterialNeed {
   bool textured = false;
 };
 
-/// The primitives of a mesh that are triangles; points and lines are left out with a warning. Nothing after a
-/// problem.
+/// The primitives of a mesh. Nothing after a problem.
 [[nodiscard]] std::optional<std::vector<Primitive>> read_mesh(const Document& document, std::size_t mesh,
                                                               const std::vector<MaterialNeed>& materials,
                                                               Budget& budget, Report& report);

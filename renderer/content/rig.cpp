@@ -143,25 +143,10 @@ void morph(const RigMesh& mesh, const std::vector<float>& weights, std::size_t i
   }
 }
 
-} // namespace
-
-RigState rig_state(const Rig& rig, double time) {
-  RigState state;
-  state.nodes = rig.nodes;
-  for (const RigChannel& channel : rig.channels) apply(channel, time, state.nodes[channel.node]);
-  state.world.resize(state.nodes.size());
-  const glm::mat4 root = glm::scale(glm::mat4(1.0f), glm::vec3(rig.scale));
-  for (const std::size_t index : rig.order) {
-    const RigNode& node = state.nodes[index];
-    state.world[index] =
-        (node.parent < 0 ? root : state.world[static_cast<std::size_t>(node.parent)]) * local(node);
-  }
-  return state;
-}
-
-void place_part(const Rig& rig, const RigState& state, const RigPart& part, Vertex* out) {
+/// A mesh's own vertices in world space.
+void place_vertices(const RigState& state, const RigPart& part, const std::vector<glm::mat4>& joints,
+                    Vertex* out) {
   const RigMesh& mesh = *part.mesh;
-  const std::vector<glm::mat4> joints = joint_matrices(rig, state, part);
   const glm::mat4& world = state.world[part.node];
   const glm::mat3 turn = normal_matrix(world);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -180,6 +165,45 @@ void place_part(const Rig& rig, const RigState& state, const RigPart& part, Vert
     }
     out[i] = vertex;
   }
+}
+
+void place_strokes(const Rig& rig, const RigMesh& mesh, const std::vector<Vertex>& at, const glm::vec3& eye,
+                   Vertex* out) {
+  const std::size_t step = stroke_vertices(mesh.form);
+  for (std::size_t i = 0; i < mesh.stroke_count(); ++i, out += step)
+    if (mesh.form == Form::points)
+      place_point(at[mesh.strokes[i]], eye, rig.point_size, out);
+    else
+      place_line(at[mesh.strokes[2 * i]], at[mesh.strokes[2 * i + 1]], eye, rig.line_width, out);
+}
+
+} // namespace
+
+RigState rig_state(const Rig& rig, double time) {
+  RigState state;
+  state.nodes = rig.nodes;
+  for (const RigChannel& channel : rig.channels) apply(channel, time, state.nodes[channel.node]);
+  state.world.resize(state.nodes.size());
+  const glm::mat4 root = glm::scale(glm::mat4(1.0f), glm::vec3(rig.scale));
+  for (const std::size_t index : rig.order) {
+    const RigNode& node = state.nodes[index];
+    state.world[index] =
+        (node.parent < 0 ? root : state.world[static_cast<std::size_t>(node.parent)]) * local(node);
+  }
+  return state;
+}
+
+void place_part(const Rig& rig, const RigState& state, const RigPart& part, const glm::vec3& eye,
+                Vertex* out) {
+  const RigMesh& mesh = *part.mesh;
+  const std::vector<glm::mat4> joints = joint_matrices(rig, state, part);
+  if (mesh.form != Form::triangles) {
+    std::vector<Vertex> at(mesh.vertices.size());
+    place_vertices(state, part, joints, at.data());
+    place_strokes(rig, mesh, at, eye, out);
+    return;
+  }
+  place_vertices(state, part, joints, out);
   if (!mesh.flat) return;
   flatten({out, mesh.vertices.size()});
   if (!is_mirrored(rig, state, part)) return;
@@ -206,7 +230,7 @@ Light place_light(const Rig& rig, const RigState& state, const RigLight& from) {
   return light;
 }
 
-void pose(const Scene& scene, double time, Pose& out) {
+void pose(const Scene& scene, double time, const glm::vec3& eye, Pose& out) {
   out.clusters = scene.geometry.clusters;
   if (!scene.rig) {
     out.vertices.clear();
@@ -219,7 +243,7 @@ void pose(const Scene& scene, double time, Pose& out) {
   const RigState state = rig_state(rig, within);
   out.vertices.resize(scene.geometry.vertices.size() - scene.static_vertices);
   for (const RigPart& part : rig.parts)
-    place_part(rig, state, part, out.vertices.data() + (part.first_vertex - scene.static_vertices));
+    place_part(rig, state, part, eye, out.vertices.data() + (part.first_vertex - scene.static_vertices));
   for (const std::size_t index : rig.moving_clusters) {
     Cluster& cluster = out.clusters[index];
     set_moving_bounds(scene.geometry, scene.static_vertices, out.vertices, cluster);

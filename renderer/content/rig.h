@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "renderer/content/scene.h"
+#include "renderer/content/strokes.h"
 
 namespace cupola::content {
 
@@ -51,6 +52,8 @@ struct RigInfluence {
 struct RigMesh {
   std::vector<Vertex> vertices;
   bool flat = false; ///< three vertices a triangle in order; normals follow from their positions
+  Form form = Form::triangles;
+  std::vector<std::uint32_t> strokes; ///< vertices that are points, or pairs of them that are lines
   struct Target {
     std::vector<glm::vec3> positions, normals; ///< offsets; empty: none
   };
@@ -58,6 +61,14 @@ struct RigMesh {
   std::size_t influences =
       0; ///< of each vertex in `skinning`, largest count of the file (4 or 8); 0: no skin
   std::vector<RigInfluence> skinning;
+
+  [[nodiscard]] std::size_t stroke_count() const {
+    return form == Form::lines ? strokes.size() / 2 : strokes.size();
+  }
+  /// Vertices that it has in a scene.
+  [[nodiscard]] std::size_t placed_vertices() const {
+    return form == Form::triangles ? vertices.size() : stroke_count() * stroke_vertices(form);
+  }
 };
 
 /// A primitive at a node.
@@ -75,11 +86,13 @@ struct RigLight {
 
 struct Rig {
   float scale = 1.0f;             ///< of the whole scene
+  float point_size = 0.0f;        ///< diameter of points as seen from the eye, radians
+  float line_width = 0.0f;        ///< radians
   std::vector<RigNode> nodes;     ///< as at rest
   std::vector<std::size_t> order; ///< of nodes: parents first
   std::vector<RigChannel> channels;
   std::vector<RigSkin> skins;
-  std::vector<RigPart> parts; ///< those that move
+  std::vector<RigPart> parts; ///< those that move, with time or with the eye
   std::vector<RigLight> lights;
   std::vector<std::size_t> moving_clusters;
 };
@@ -90,8 +103,9 @@ struct RigState {
   std::vector<glm::mat4> world;
 };
 [[nodiscard]] RigState rig_state(const Rig& rig, double time);
-/// The vertices of one part; `out` has room for all of its mesh.
-void place_part(const Rig& rig, const RigState& state, const RigPart& part, Vertex* out);
+/// The vertices of one part as they are seen from `eye`; `out` has room for all that the mesh places.
+void place_part(const Rig& rig, const RigState& state, const RigPart& part, const glm::vec3& eye,
+                Vertex* out);
 /// Mirrored parts show their triangles' backs: their winding has to be turned.
 [[nodiscard]] bool is_mirrored(const Rig& rig, const RigState& state, const RigPart& part);
 [[nodiscard]] Light place_light(const Rig& rig, const RigState& state, const RigLight& light);

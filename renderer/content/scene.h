@@ -61,7 +61,7 @@ struct Material {
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;
-  bool unlit = false;   ///< colour as it is, no light
+  bool unlit = false;   ///< base colour and what it emits as they are, no light
   bool fogless = false; ///< a sky: fog does not reach it
   TextureUse base_color_map, metallic_roughness_map, normal_map, emissive_map, occlusion_map;
 };
@@ -74,8 +74,9 @@ struct Cluster {
   float radius = 0.0f;
 };
 
-/// Triangles, counter-clockwise from their front. Clusters stand sorted by alpha mode (opaque, mask, blend),
-/// then by material, and cover `indices` without gap or overlap, in order.
+/// Triangles, counter-clockwise from their front; points and lines stand as triangles too, see Pose. Clusters
+/// stand sorted by alpha mode (opaque, mask, blend), then by material, and cover `indices` without gap or
+/// overlap, in order.
 struct Geometry {
   std::vector<Vertex> vertices;
   std::vector<std::uint32_t> indices;
@@ -92,16 +93,16 @@ struct Light {
   float cos_inner = 1.0f, cos_outer = 0.0f;
 };
 
-struct Rig; ///< nodes, skins, morph targets and animation; private to this room
+struct Rig; ///< nodes, skins, morph targets, animation, points and lines; private to this room
 
 struct Scene {
   std::vector<Image> images;
   std::vector<Texture> textures;
   std::vector<Material> materials;
-  Geometry geometry;                 ///< at time 0
+  Geometry geometry;                 ///< at time 0, seen from the origin
   std::vector<Light> lights;         ///< at time 0
-  std::uint32_t static_vertices = 0; ///< vertices from here on move with time
-  double duration = 0.0;             ///< seconds of one round of the animation; 0: nothing moves
+  std::uint32_t static_vertices = 0; ///< vertices from here on move with time or with the eye
+  double duration = 0.0;             ///< seconds of one round of the animation; 0: nothing moves with time
   glm::vec3 bounds_min{0.0f}, bounds_max{0.0f};
   std::shared_ptr<const Rig> rig; ///< null when nothing moves
 };
@@ -115,13 +116,15 @@ struct LoadedScene {
 [[nodiscard]] model::Result<LoadedScene> load_scene(const model::Content& content,
                                                     const std::filesystem::path& folder);
 
-/// What moves, at a time. Sizes never change: vertices[i] replaces geometry.vertices[static_vertices + i].
+/// What moves, at a time and seen from an eye, which points and lines turn to. Sizes never change:
+/// vertices[i] replaces geometry.vertices[static_vertices + i].
 struct Pose {
   std::vector<Vertex> vertices;
   std::vector<Cluster> clusters; ///< all clusters, with bounds that hold at this time
   std::vector<Light> lights;
 };
-/// Writes the pose at `time` seconds (repeats after `duration`); reuses the memory of `out`. Any thread.
-void pose(const Scene& scene, double time, Pose& out);
+/// Writes the pose at `time` seconds (repeats after `duration`) for an eye in world space; reuses the memory
+/// of `out`. Any thread.
+void pose(const Scene& scene, double time, const glm::vec3& eye, Pose& out);
 
 } // namespace cupola::content

@@ -2,7 +2,7 @@
 // is, C++ through shading.h. So it keeps to what GLSL 4.50 and GLM share: literals end in f, no inout, no array.
 // All colours are linear. Order of use for one fragment:
 //   lit:   apply_fog(tone(shade(s, l) + sum of shade_light(s, ...)), s.distance, l)
-//   unlit: apply_fog(s.base, s.distance, l)
+//   unlit: apply_fog(s.base + s.emissive, s.distance, l)
 //   a material without fog (a sky) leaves apply_fog out.
 #ifndef CUPOLA_FN
 #define CUPOLA_FN

@@ -69,7 +69,7 @@ struct ReferenceView::Impl {
         tracer = std::make_unique<reference::Tracer>(scene);
       }
       if (scene->rig) {
-        content::pose(*scene, now.time, pose);
+        content::pose(*scene, now.time, glm::vec3(now.camera.position), pose);
         tracer->move(pose);
       }
       const model::Show& show = *now.stage->show;

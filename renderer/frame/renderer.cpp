@@ -14,6 +14,7 @@
 #include "renderer/frame/method_choice.h"
 #include "renderer/frame/realised.h"
 #include "renderer/frame/reference_view.h"
+#include "renderer/frame/scene_pose.h"
 #include "renderer/passes/cubemap_pass.h"
 #include "renderer/passes/frame_block.h"
 #include "renderer/passes/gpu_pieces.h"
@@ -72,7 +73,7 @@ struct Renderer::Impl {
   std::shared_ptr<const Stage> waiting;
   model::Problems problems;
   std::vector<Picture> pictures;
-  content::Pose pose;
+  ScenePose moving;
   passes::DrawList list;
 
   void take_waiting();
@@ -283,15 +284,11 @@ void Renderer::Impl::take_quality() {
 passes::FrameScene Renderer::Impl::pose_scene(const plan::CameraPose& camera, double time) {
   const content::Scene& scene = current->scene->scene();
   const model::Show& show = *current->stage->show;
-  if (scene.rig) {
-    content::pose(scene, time, pose);
-    current->scene->set_moving_vertices(pose.vertices);
-  } else {
-    pose.vertices.clear();
-  }
+  const glm::vec3 eye(camera.position);
+  moving.place(current->scene, time, eye);
+  const content::Pose& pose = moving.pose();
   const auto& lights = scene.rig ? pose.lights : scene.lights;
   const std::span<const content::Cluster> clusters(scene.rig ? pose.clusters : scene.geometry.clusters);
-  const glm::vec3 eye(camera.position);
   passes::order_for_eye(scene, clusters, pose.vertices, eye, list);
   if (!list.blended_indices.empty()) current->scene->set_indices(list.blended_first, list.blended_indices);
 

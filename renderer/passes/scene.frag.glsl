@@ -129,7 +129,7 @@ void main() {
 
   Lighting lighting = frame_lighting();
 #ifdef CUPOLA_UNLIT
-  vec3 color = surface.base;
+  vec3 color = surface.base + surface.emissive;
 #else
   vec3 color = shade(surface, lighting);
 #ifdef CUPOLA_LIGHTS

@@ -233,7 +233,7 @@ glm::vec4 surface_color(const World& world, const Shading& how, const SeenTriang
   const Corners corners = corners_of(world, triangle.triangle);
   const shading::Surface surface = surface_at(world, how, triangle, crossing, corners, material);
 
-  glm::vec3 color = surface.base; // KHR_materials_unlit: the base colour alone
+  glm::vec3 color = surface.base + surface.emissive;
   if (!material.unlit) {
     color = shading::shade(surface, how.lighting);
     const glm::vec3 position = moved(triangle, crossing.weights) + glm::vec3(how.eye);

@@ -160,6 +160,11 @@ TEST_CASE("every contradiction is a problem at its own place") {
       {"/meshes/0/primitives/0/indices", [](Json& j) { j["accessors"][2]["count"] = 5; }},
       {"/accessors/0/componentType", [](Json& j) { j["meshes"][0]["primitives"][0]["indices"] = 0; }},
       {"/meshes/0/primitives/0/mode", [](Json& j) { j["meshes"][0]["primitives"][0]["mode"] = 7; }},
+      {"/meshes/0/primitives/0/indices", // an odd number of ends of lines
+       [](Json& j) {
+         j["accessors"][2]["count"] = 5;
+         j["meshes"][0]["primitives"][0]["mode"] = 1;
+       }},
       {"/meshes/0/primitives/0/material", [](Json& j) { j["meshes"][0]["primitives"][0]["material"] = 1; }},
       {"/meshes/0/primitives/0/attributes/TEXCOORD_0",
        [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 2; }},
@@ -343,7 +348,7 @@ TEST_CASE("random byte flips: a sound scene or problems") {
     for (const std::uint32_t index : loaded->scene->geometry.indices)
       REQUIRE(index < loaded->scene->geometry.vertices.size());
     Pose posed;
-    pose(*loaded->scene, 0.5, posed);
+    pose(*loaded->scene, 0.5, glm::vec3(0.0f), posed);
   }
   CHECK(survived > 30); // names and numbers may change without harm
   CHECK(survived < 950);

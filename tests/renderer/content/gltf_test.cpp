@@ -335,10 +335,6 @@ TEST_CASE("what lessens the picture is a named warning") {
     void (*change)(GltfFile&);
   };
   const Case cases[] = {
-      {"points", "/meshes/0/primitives/0/mode",
-       [](GltfFile& f) { f.json["meshes"][0]["primitives"][0]["mode"] = 0; }},
-      {"lines", "/meshes/0/primitives/0/mode",
-       [](GltfFile& f) { f.json["meshes"][0]["primitives"][0]["mode"] = 1; }},
       {"an unknown extension", "/extensionsUsed/0",
        [](GltfFile& f) { f.json["extensionsUsed"] = {"KHR_materials_clearcoat"}; }},
       {"no positions", "/meshes/0/primitives/0/attributes",

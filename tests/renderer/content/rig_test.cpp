@@ -38,7 +38,7 @@ std::shared_ptr<const Scene> good(const model::Result<LoadedScene>& loaded) {
 /// A vertex at a time; clusters have to hold everything then.
 Vertex at(const Scene& scene, double time, std::size_t vertex) {
   Pose posed;
-  pose(scene, time, posed);
+  pose(scene, time, glm::vec3(0.0f), posed);
   REQUIRE(posed.vertices.size() == scene.geometry.vertices.size() - scene.static_vertices);
   REQUIRE(posed.clusters.size() == scene.geometry.clusters.size());
   for (const Cluster& cluster : posed.clusters) {
@@ -146,7 +146,7 @@ TEST_CASE("a child moves with its animated parent, lights too") {
   const auto scene = good(load(m.file));
   check_point(at(*scene, 0.75, 0).position, {3, 2, 0});
   Pose posed;
-  pose(*scene, 0.75, posed);
+  pose(*scene, 0.75, glm::vec3(0.0f), posed);
   REQUIRE(posed.lights.size() == 1);
   check_point(posed.lights[0].position, {3, 2, 0});
   check_point(scene->lights[0].position, {0, 2, 0});
@@ -181,7 +181,7 @@ TEST_CASE("skins blend their joints, and ignore the mesh's own node") {
   Rig bent = *scene->rig; // the end of the round itself, which pose() wraps to its start
   const RigState state = rig_state(bent, 1.0);
   std::vector<Vertex> vertices(3);
-  place_part(bent, state, bent.parts.at(0), vertices.data());
+  place_part(bent, state, bent.parts.at(0), glm::vec3(0.0f), vertices.data());
   check_point(vertices[0].position, {0, 0, 0});
   check_point(vertices[1].position, {0, 1, 0});  // at the joint: weights 2 and 2 count as halves
   check_point(vertices[2].position, {-1, 2, 0}); // (1, 1) against the tip, turned by a quarter
