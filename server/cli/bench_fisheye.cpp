@@ -83,8 +83,9 @@ private:
           plan::matched_cubemap_size(projection::make_map(show.projections["view"], 1.0), {0, 0, size, size});
       show.quality.cubemap_size = static_cast<int>(std::lround(matched * way.cubemap_scale / 8.0)) * 8;
     }
-    const bool many = triangles > 1'000'000;
-    Frames frames{double{poses}, poses, quick_ ? 1 : (many ? 2 : 5), 0};
+    // The sizes beside, and frames that take seconds, do with every other pose.
+    const bool few = quick_ || way.cubemap_scale > 0.0 || triangles > 1'000'000;
+    Frames frames{double{poses}, few ? poses / 2 : poses, quick_ ? 1 : (few ? 2 : 3), 0};
     if (way.method == model::Method::automatic) frames.before = frame::method_trial_frames;
     if (!as_json_) std::fprintf(stderr, "%dk triangles, %d²: %s\n", triangles / 1000, size, way.name.c_str());
     const auto timed = time_show(renderer_, show, scene_, frames);

@@ -140,9 +140,10 @@ TEST_CASE("a point is a disc as large as a circle of its size, and faces the eye
 TEST_CASE("every mode of points and lines has its strokes") {
   // Mode, and the points or lines that it makes of four corners.
   const std::vector<std::array<std::size_t, 2>> expected{{0, 4}, {1, 2}, {2, 4}, {3, 3}};
-  for (const auto& [mode, count] : expected)
+  for (const auto& pair : expected)
     for (const bool indexed : {false, true}) {
-      CAPTURE(std::size_t{mode});
+      const std::size_t mode = pair[0], count = pair[1];
+      CAPTURE(mode);
       GltfFile file;
       Json primitive{
           {"attributes", {{"POSITION", file.floats({0, 0, -9, 1, 0, -9, 1, 1, -9, 0, 1, -9}, "VEC3")}}},
