@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <functional>
 #include <glm/vec2.hpp>
 #include <map>
@@ -170,16 +169,9 @@ private:
   }
 
   [[nodiscard]] bool write_plot() const {
-    std::ofstream file(options_.plot);
-    file << log_log_chart(panels_, "milliseconds a frame");
-    file.close();
-    if (file) return true;
-    print_problems({{.code = model::Code::image_unwritable,
-                     .pointer = "",
-                     .expected = "an SVG file that can be written",
-                     .found = options_.plot,
-                     .advice = ""}});
-    return false;
+    const auto written = write_text(options_.plot, log_log_chart(panels_, "milliseconds a frame"));
+    if (!written) print_problems(written.error());
+    return written.has_value();
   }
 
   frame::Renderer& renderer_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <epoxy/gl.h>
+#include <fstream>
 
 #include "renderer/content/scene.h"
 #include "renderer/plan/plan.h"
@@ -12,6 +13,13 @@ namespace cupola::cli {
 void print_problems(const model::Problems& problems) {
   for (const model::Problem& problem : problems)
     std::fprintf(stderr, "%s\n", model::to_text(problem).c_str());
+}
+
+model::Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  if (stream << text && stream.flush()) return {};
+  return model::failure(
+      {model::Code::image_unwritable, "", "a file that can be written", file.string(), "", {}, {}});
 }
 
 bool parse_pair(const std::string& text, const std::string& between, long& a, long& b) {

@@ -36,6 +36,9 @@ make_stage(const model::Show& show, const std::filesystem::path& folder,
 /// The picture as bytes, rows from the top. With the context current.
 [[nodiscard]] outputs::ByteImage read_picture(const frame::Picture& picture);
 
+/// Fails with image_unwritable.
+[[nodiscard]] model::Result<void> write_text(const std::filesystem::path& file, const std::string& text);
+
 /// "80x40" with `between` "x": 80 and 40.
 [[nodiscard]] bool parse_pair(const std::string& text, const std::string& between, long& a, long& b);
 

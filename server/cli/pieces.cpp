@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -132,13 +131,6 @@ void print(const std::vector<Figures>& all, bool json) {
       std::printf("%s\n", as_text(figures).c_str());
   }
   if (json) std::printf("%s\n", nlohmann::ordered_json{{"viewports", std::move(list)}}.dump(2).c_str());
-}
-
-model::Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  if (stream << text && stream.flush()) return {};
-  return model::failure(
-      {model::Code::image_unwritable, "", "a file that can be written", file.string(), "", {}, {}});
 }
 
 /// The first picture of the one output, with the borders over it.

@@ -26,6 +26,19 @@ plan::PieceSet cells(const model::Shape& shape, double max_error = 0.25) {
   return *plan::make_cells(projection::make_map(projection, 1.0), {0, 0, size, size}, max_error);
 }
 
+/// Two triangles for each cell of the set's corners, which stand in rows of `across`.
+void finish_grid(plan::PieceSet& set, std::uint32_t across) {
+  const auto rows = static_cast<std::uint32_t>(set.corners.size()) / across;
+  for (std::uint32_t y = 0; y + 1 < rows; ++y)
+    for (std::uint32_t x = 0; x + 1 < across; ++x) {
+      const std::uint32_t a = y * across + x, b = a + 1, c = a + across, d = c + 1;
+      set.triangles.push_back({a, d, b});
+      set.triangles.push_back({a, c, d});
+    }
+  set.shown.assign(set.triangles.size(), plan::Shown::all);
+  plan::finish_triangles(set, {0, 0, size, size});
+}
+
 /// Square cells whose diagonals run through pixel centres: what a splitter avoids and data may ask for.
 plan::PieceSet leaky_cells() {
   constexpr int side = 16;
@@ -38,15 +51,7 @@ plan::PieceSet leaky_cells() {
       const glm::dvec2 at(2.0 * x / size - 1.0, 1.0 - 2.0 * y / size);
       set.corners.push_back({glm::normalize(projection::beyond(map, at, glm::dvec2(0.0)).value()), 1.0, at});
     }
-  constexpr std::uint32_t across = size / side + 1;
-  for (std::uint32_t y = 0; y + 1 < across; ++y)
-    for (std::uint32_t x = 0; x + 1 < across; ++x) {
-      const std::uint32_t a = y * across + x, b = a + 1, c = a + across, d = c + 1;
-      set.triangles.push_back({a, d, b});
-      set.triangles.push_back({a, c, d});
-    }
-  set.shown.assign(set.triangles.size(), plan::Shown::all);
-  plan::finish_triangles(set, {0, 0, size, size});
+  finish_grid(set, size / side + 1);
   return set;
 }
 
@@ -64,14 +69,7 @@ plan::PieceSet moved_grid(bool folded) {
       set.corners.push_back(
           {ray, -ray.z, folded ? at + glm::dvec2(0.35 * std::sin(5.0 * at.x), 0.0) : swirled});
     }
-  for (std::uint32_t j = 0; j + 1 < across; ++j)
-    for (std::uint32_t i = 0; i + 1 < across; ++i) {
-      const std::uint32_t a = j * across + i, b = a + 1, c = a + across, d = c + 1;
-      set.triangles.push_back({a, d, b});
-      set.triangles.push_back({a, c, d});
-    }
-  set.shown.assign(set.triangles.size(), plan::Shown::all);
-  plan::finish_triangles(set, {0, 0, size, size});
+  finish_grid(set, across);
   return set;
 }
 

@@ -5,12 +5,12 @@ pieces_test.py BIN.
 """
 import json
 import math
-import subprocess
 import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+
+from shell import CupolaTest
 
 CUPOLA = str(Path(sys.argv.pop(1)) / "cupola")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "system"))
@@ -43,18 +43,8 @@ def distance(x, y, a, b):
     return math.hypot(x - a[0] - along * dx, y - a[1] - along * dy)
 
 
-class Pieces(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-        self.show = self.folder / "show.json"
-        self.show.write_text(json.dumps(SHOW))
-
-    def cupola(self, *arguments, expect=0):
-        done = subprocess.run([CUPOLA, *map(str, arguments)], capture_output=True, text=True, timeout=100)
-        self.assertEqual(done.returncode, expect, done.stderr + done.stdout)
-        return done
+class Pieces(CupolaTest):
+    CUPOLA, SHOW = CUPOLA, SHOW
 
     def pieces(self, *arguments, expect=0):
         return self.cupola("pieces", self.show, *arguments, expect=expect)

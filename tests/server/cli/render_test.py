@@ -6,11 +6,11 @@ render_test.py BIN.
 import json
 import re
 import struct
-import subprocess
 import sys
-import tempfile
 import unittest
 from pathlib import Path
+
+from shell import CupolaTest
 
 CUPOLA = str(Path(sys.argv.pop(1)) / "cupola")
 
@@ -32,21 +32,11 @@ def png_size(file):
     return struct.unpack(">II", head[16:24])
 
 
-class Render(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-        self.show = self.folder / "show.json"
-        self.show.write_text(json.dumps(SHOW))
-
-    def run_cupola(self, *arguments, expect=0):
-        done = subprocess.run([CUPOLA, *map(str, arguments)], capture_output=True, text=True, timeout=100)
-        self.assertEqual(done.returncode, expect, done.stderr + done.stdout)
-        return done
+class Render(CupolaTest):
+    CUPOLA, SHOW = CUPOLA, SHOW
 
     def render(self, *arguments, expect=0):
-        return self.run_cupola("render", self.show, *arguments, expect=expect)
+        return self.cupola("render", self.show, *arguments, expect=expect)
 
     def test_every_output_becomes_a_picture_in_a_folder(self):
         self.render("-o", self.folder / "out")
@@ -60,7 +50,7 @@ class Render(unittest.TestCase):
                         "--supersampling", "2", "--anisotropy", "2", "--quiet", "-o", file)
             self.assertEqual(png_size(file), (80, 40))
         for method in ("piecewise", "cubemap"):
-            done = self.run_cupola("compare", self.folder / f"{method}.png", self.folder / "reference.png")
+            done = self.cupola("compare", self.folder / f"{method}.png", self.folder / "reference.png")
             self.assertGreater(float(re.match(r"PSNR: ([\d.]+) dB", done.stdout)[1]), 18)
 
     def test_options_outrank_automatic_quality(self):
@@ -104,15 +94,15 @@ class Render(unittest.TestCase):
         self.assertIn("--cubemap-size", self.render("--cubemap-size", "7", *to, expect=2).stderr)
         self.render("--method", "magic", *to, expect=2)
         self.render(expect=2)
-        self.run_cupola("render", self.folder / "absent.json", *to, expect=2)
+        self.cupola("render", self.folder / "absent.json", *to, expect=2)
         (self.folder / "bad.json").write_text("{}")
-        self.run_cupola("render", self.folder / "bad.json", *to, expect=1)
+        self.cupola("render", self.folder / "bad.json", *to, expect=1)
         self.assertIn(".bmp", self.render("--output", "dome", "-o", self.folder / "x.bmp", expect=1).stderr)
         # A problem of the show, with its place: a perspective of more than half a turn.
         show = json.loads(json.dumps(SHOW))
         show["projections"]["wall"] = {"kind": "panini", "distance": 0, "horizontal_fov": 200}
         (self.folder / "wide.json").write_text(json.dumps(show))
-        done = self.run_cupola("render", self.folder / "wide.json", "-o", self.folder / "out", expect=1)
+        done = self.cupola("render", self.folder / "wide.json", "-o", self.folder / "out", expect=1)
         self.assertRegex(done.stderr, r"/projections/wall/horizontal_fov: .*\[PLN-102\]")
         done = self.render("--output", "wall", "-o", "/proc/cupola/x.png", expect=1)
         self.assertIn("[OUT-102]", done.stderr)
@@ -121,7 +111,7 @@ class Render(unittest.TestCase):
         self.assertFalse((self.folder / "out").exists())
 
     def test_the_version(self):
-        self.assertRegex(self.run_cupola("--version").stdout, r"^cupola \d+\.\d+\.\d+\n$")
+        self.assertRegex(self.cupola("--version").stdout, r"^cupola \d+\.\d+\.\d+\n$")
 
 
 if __name__ == "__main__":
