@@ -2,29 +2,29 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <memory>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "renderer/passes/cell_cut.h"
+#include "renderer/passes/vertex_cache.h"
 
 namespace cupola::passes {
 
-void Occlusion::reset(std::size_t pieces) {
-  if (size_ != pieces) {
-    depths_ = std::make_unique<std::atomic<float>[]>(pieces);
-    size_ = pieces;
-  }
-  for (std::size_t i = 0; i < pieces; ++i)
-    depths_[i].store(std::numeric_limits<float>::infinity(), std::memory_order_relaxed);
-}
-
-void Occlusion::cover(std::uint32_t piece, float farthest) {
-  std::atomic<float>& depth = depths_[piece];
-  float before = depth.load(std::memory_order_relaxed);
-  while (farthest < before && !depth.compare_exchange_weak(before, farthest, std::memory_order_relaxed)) {}
-}
-
 namespace {
+
+constexpr float shells_per_octave = 2.0f;
+constexpr std::uint32_t prefetched = 3 * 8; ///< indices ahead of which vertices are fetched from memory
+constexpr float rounding = 1e-5f;           ///< of depths and distances, relative
+
+/// No point of a sphere is nearer to the eye.
+float nearest_of_sphere(float distance, float radius) {
+  return std::max(0.0f, distance - radius - rounding * (distance + radius));
+}
 
 /// A triangle of the scene as seen from the eye.
 struct Triangle {
@@ -36,91 +36,38 @@ struct Triangle {
   std::array<glm::vec3, 3> edges;
   std::array<float, 3> lengths; ///< of `edges`
   float determinant;            ///< of the corners, made positive
-  bool opaque;
+  float nearest;                ///< no point of it is nearer to the eye, metres
+  glm::vec3 axis;               ///< of a cone around it
+  float sine, cosine;           ///< of the cone's half angle; cosine -1: no cone holds it
+  bool opaque, blended;
   bool back; ///< seen from behind
 };
 
-/// A corner of a part: barycentric coordinates in the piece's pyramid and in the triangle.
-struct Point {
-  glm::vec3 in_piece;
-  glm::vec3 in_triangle; ///< sum 1
-  std::uint8_t edges;    ///< bits of the triangle's edges it lies on
-  int border;            ///< of the piece: 0, 1, 2 opposite that corner; -1: a corner of the triangle
-};
-
-struct Polygon {
-  std::array<Point, 6> points;
-  int count = 0;
-  void push(const Point& point) { points[static_cast<std::size_t>(count++)] = point; }
-};
-
-/// Where the segment from the inside point p to the outside point q meets the border b[axis] = 0.
-Point meet(const Point& p, const Point& q, int axis) {
-  const float t = p.in_piece[axis] / (p.in_piece[axis] - q.in_piece[axis]);
-  Point out;
-  out.in_piece = p.in_piece + t * (q.in_piece - p.in_piece);
-  out.in_piece[axis] = 0.0f;
-  out.in_triangle = p.in_triangle + t * (q.in_triangle - p.in_triangle);
-  out.edges = p.edges & q.edges;
-  out.border = axis;
-  return out;
+/// Shells of depth: what is nearer is drawn earlier, so that little is shaded in vain.
+constexpr std::size_t shells = 32;
+std::size_t shell_of(float depth) {
+  const float octaves = std::log2(std::max(depth, 1.0f));
+  return std::min(static_cast<std::size_t>(shells_per_octave * octaves), shells - 1);
 }
 
-/// Keeps b[axis] >= 0. Cuts go from the inside to the outside whichever way round the polygon runs, so that
-/// the two triangles at an edge find the same point.
-void cut(const Polygon& in, int axis, Polygon& out) {
-  out.count = 0;
-  for (int i = 0; i < in.count; ++i) {
-    const Point& p = in.points[static_cast<std::size_t>(i)];
-    const Point& q = in.points[static_cast<std::size_t>(i + 1 == in.count ? 0 : i + 1)];
-    const bool p_in = p.in_piece[axis] >= 0.0f, q_in = q.in_piece[axis] >= 0.0f;
-    if (p_in) out.push(p);
-    if (p_in != q_in) out.push(p_in ? meet(p, q, axis) : meet(q, p, axis));
-  }
-  if (out.count < 3) out.count = 0;
-}
-
-std::uint32_t mix_color(const std::array<const content::Vertex*, 3>& of, const glm::vec3& weights) {
-  if (of[0]->color == of[1]->color && of[1]->color == of[2]->color) return of[0]->color;
-  std::uint32_t out = 0;
-  for (unsigned shift = 0; shift < 32; shift += 8) {
-    float sum = 0.5f;
-    for (int i = 0; i < 3; ++i)
-      sum += static_cast<float>(of[static_cast<std::size_t>(i)]->color >> shift & 255u) * weights[i];
-    out |= static_cast<std::uint32_t>(std::clamp(sum, 0.0f, 255.0f)) << shift;
-  }
-  return out;
-}
-
-/// Emitted vertices that a neighbour may use again.
-class VertexCache {
-public:
-  struct Key {
-    std::uint32_t a, b, c, d;
-    bool operator==(const Key&) const = default;
-  };
-  /// The slot of a key: a hit when its key is the same.
-  struct Entry {
-    Key key{~0u, ~0u, ~0u, ~0u};
-    std::uint32_t emitted = 0;
-  };
-  Entry& at(const Key& key) {
-    const std::uint32_t hash =
-        key.a * 2654435761u ^ key.b * 2246822519u ^ key.c * 3266489917u ^ key.d * 668265263u;
-    return entries_[(hash ^ hash >> 15) & (entries_.size() - 1)];
-  }
-
-private:
-  std::array<Entry, 8192> entries_{};
+/// What a thread keeps from task to task.
+struct Scratch {
+  VertexCache cache;
+  std::array<std::vector<std::uint32_t>, shells> indices; ///< of the run in the making, by shell
+  std::vector<std::uint32_t> entries;                     ///< groups that the item is tried against
 };
 
 /// Distributes the items of one batch.
 class Task {
 public:
-  Task(const FrameGeometry& geometry, const CellView& view, Occlusion& occlusion, EmittedBatch& out)
+  Task(const FrameGeometry& geometry, const CellView& view, Occlusion& occlusion, Scratch& scratch,
+       std::uint32_t number, EmittedBatch& out)
       : geometry_(geometry)
       , view_(view)
       , occlusion_(occlusion)
+      , scratch_(scratch)
+      , entries_(scratch.entries)
+      , number_(number)
       , out_(out) {
     out_.vertices.clear();
     out_.indices.clear();
@@ -128,42 +75,87 @@ public:
     out_.pairs = out_.hidden = 0;
   }
 
+  void run(const TaskItems& task) {
+    std::uint32_t material = task.items.front().material, run = task.first_run;
+    for (const DrawItem& item : task.items) {
+      if (item.material != material) finish(material, run++);
+      material = item.material;
+      this->item(item);
+    }
+    finish(material, run);
+  }
+
+private:
+  /// Indices of one material go to the batch: shell by shell, or, where the order counts, as they stand.
+  void finish(std::uint32_t material, std::uint32_t run) {
+    const auto materials = static_cast<std::uint32_t>(geometry_.materials.size());
+    for (std::uint32_t shell = 0; shell < shells; ++shell) {
+      std::vector<std::uint32_t>& indices = scratch_.indices[shell];
+      if (indices.empty()) continue;
+      out_.portions.push_back({material, is_blended(material) ? run : shell * materials + material, 0,
+                               static_cast<std::uint32_t>(out_.indices.size()),
+                               static_cast<std::uint32_t>(indices.size())});
+      out_.indices.insert(out_.indices.end(), indices.begin(), indices.end());
+      indices.clear();
+    }
+  }
+
+  [[nodiscard]] bool is_blended(std::uint32_t material) const {
+    return geometry_.materials[material].alpha_mode == content::AlphaMode::blend;
+  }
+
   void item(const DrawItem& item) {
     find_entries(item);
     if (entries_.empty()) return;
     const content::Material& material = geometry_.materials[item.material];
-    const auto first = static_cast<std::uint32_t>(out_.indices.size());
-    for (std::uint32_t i = 0; i + 2 < item.index_count; i += 3) triangle(item.first_index + i, material);
-    const auto count = static_cast<std::uint32_t>(out_.indices.size()) - first;
-    if (count == 0) return;
-    if (!out_.portions.empty() && out_.portions.back().material == item.material)
-      out_.portions.back().index_count += count;
-    else
-      out_.portions.push_back(
-          {item.material, static_cast<std::uint32_t>(out_.portions.size()), 0, first, count});
+    for (std::uint32_t i = 0; i + 2 < item.index_count; i += 3) {
+      if (i + 2 + prefetched < item.index_count)
+        for (std::uint32_t k = 0; k < 3; ++k)
+          __builtin_prefetch(&geometry_.vertex(geometry_.index(item.first_index + i + prefetched + k)));
+      triangle(item.first_index + i, material);
+    }
   }
 
-private:
-  /// Groups that the item's triangles are tried against: as small as a few of them get.
+  /// Groups that the item's triangles are tried against: as small as a few of them get, without those in
+  /// which all of the item is hidden.
   void find_entries(const DrawItem& item) {
     constexpr std::size_t enough = 8;
     const auto& groups = view_.pieces.groups();
     entries_.assign(1, 0);
+    item_nearest_ = 0.0f;
     if (item.radius < 0.0f) return;
     const glm::vec3 center = view_.view_from_world * (item.center - view_.eye);
+    item_nearest_ = nearest_of_sphere(glm::length(center), item.radius);
     for (std::size_t i = 0; i < entries_.size();) {
       const std::uint32_t at = entries_[i];
       const PieceTable::Group& group = groups[at];
-      if (!PieceTable::meets(group, center, item.radius)) {
+      if (occlusion_.hides_in_group(at, item_nearest_) || !PieceTable::meets(group, center, item.radius)) {
         entries_[i] = entries_.back();
         entries_.pop_back();
-      } else if (group.next != at + 1 && entries_.size() < enough) {
+      } else if (!group.is_leaf(at) && entries_.size() < enough) {
         entries_[i] = at + 1;
         entries_.push_back(groups[at + 1].next);
       } else {
         ++i;
       }
     }
+    std::erase_if(entries_, [&](std::uint32_t entry) { return !may_show(entry, center, item.radius); });
+  }
+
+  /// Whether the sphere, all of it at least item_nearest_ away, may be seen in a piece of the group.
+  [[nodiscard]] bool may_show(std::uint32_t entry, const glm::vec3& center, float radius) const {
+    const auto& groups = view_.pieces.groups();
+    const std::uint32_t end = groups[entry].next;
+    for (std::uint32_t at = entry; at < end;) {
+      const PieceTable::Group& group = groups[at];
+      if (occlusion_.hides_in_group(at, item_nearest_) || !PieceTable::meets(group, center, radius))
+        at = group.next;
+      else if (group.is_leaf(at))
+        return true;
+      else
+        ++at;
+    }
+    return false;
   }
 
   void triangle(std::uint32_t first_index, const content::Material& material) {
@@ -188,10 +180,29 @@ private:
       for (glm::vec3& edge : t.edges) edge = -edge;
     }
     for (std::size_t i = 0; i < 3; ++i) t.lengths[i] = glm::length(t.edges[i]);
+    surround(t);
+    t.blended = material.alpha_mode == content::AlphaMode::blend;
     t.opaque = material.alpha_mode == content::AlphaMode::opaque;
     flat_ = t.vertex[0]->normal == t.vertex[1]->normal && t.vertex[1]->normal == t.vertex[2]->normal;
     if (flat_) normal_ = pack_normal(t.vertex[0]->normal);
     for (const std::uint32_t entry : entries_) walk(t, entry);
+  }
+
+  /// The sphere around its middle: its cone, and the least distance to the eye.
+  void surround(Triangle& t) const {
+    const glm::vec3 middle = (t.view[0] + t.view[1] + t.view[2]) * (1.0f / 3.0f);
+    float square = 0.0f;
+    for (const glm::vec3& corner : t.view) {
+      const glm::vec3 away = corner - middle;
+      square = std::max(square, glm::dot(away, away));
+    }
+    const float distance = glm::length(middle), radius = std::sqrt(square);
+    t.nearest = std::max(item_nearest_, nearest_of_sphere(distance, radius));
+    t.cosine = -1.0f;
+    if (radius >= 0.7f * distance) return;
+    t.axis = middle / distance;
+    t.sine = radius / distance + rounding;
+    t.cosine = std::sqrt(1.0f - t.sine * t.sine);
   }
 
   void walk(const Triangle& t, std::uint32_t entry) {
@@ -199,7 +210,7 @@ private:
     const std::uint32_t end = groups[entry].next;
     for (std::uint32_t at = entry; at < end;) {
       const PieceTable::Group& group = groups[at];
-      const Meeting meeting = meeting_of(t, group);
+      const Meeting meeting = occlusion_.hides_in_group(at, t.nearest) ? Meeting::none : meeting_of(t, group);
       if (meeting == Meeting::none) {
         at = group.next;
         continue;
@@ -209,17 +220,26 @@ private:
         at = group.next;
         continue;
       }
-      if (group.next == at + 1)
-        for (std::uint32_t i = 0; i < group.count; ++i) piece(t, group.first + i);
+      if (group.is_leaf(at))
+        for (std::uint32_t i = 0; i < group.count; ++i)
+          if (!apart(t, view_.pieces.cones()[group.first + i])) piece(t, group.first + i);
       ++at;
     }
   }
 
   enum class Meeting : std::uint8_t { none, some, all };
 
+  /// Whether the triangle's cone and another have no ray in common. Neither is wider than half a turn, so
+  /// that the sum of their half angles is not more than that.
+  static bool apart(const Triangle& t, const PieceTable::Cone& cone) {
+    return t.cosine > 0.0f &&
+           glm::dot(t.axis, cone.axis) < t.cosine * cone.cosine - t.sine * cone.sine - rounding;
+  }
+
   /// A cone against the triangle's pyramid: beyond one of its planes, within all, or neither.
   static Meeting meeting_of(const Triangle& t, const PieceTable::Group& group) {
     if (group.cosine <= -1.0f) return Meeting::some;
+    if (apart(t, group)) return Meeting::none;
     bool within = true;
     for (std::size_t i = 0; i < 3; ++i) {
       const float height = glm::dot(t.edges[i], group.axis), reach = group.sine * t.lengths[i];
@@ -308,11 +328,13 @@ private:
     }
     // Fronts run counter-clockwise on the screen, also where the piece shows them mirrored.
     for (std::size_t i = 1; i + 1 < static_cast<std::size_t>(polygon.count); ++i)
-      add(index[0], index[i], index[i + 1], piece.mirrored);
+      add(t, nearest, {index[0], index[i], index[i + 1]}, piece.mirrored);
   }
 
-  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, bool turned) {
-    out_.indices.insert(out_.indices.end(), {a, turned ? c : b, turned ? b : c});
+  void add(const Triangle& t, float depth, std::array<std::uint32_t, 3> index, bool turned) {
+    if (turned) std::swap(index[1], index[2]);
+    std::vector<std::uint32_t>& indices = scratch_.indices[t.blended ? 0 : shell_of(depth)];
+    indices.insert(indices.end(), index.begin(), index.end());
   }
 
   /// The triangle covers all of the piece: its part is the piece itself.
@@ -320,7 +342,7 @@ private:
     const PieceTable::Piece& piece = view_.pieces.pieces()[number];
     std::array<Point, 3> points;
     std::array<glm::vec3, 3> h;
-    float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f;
+    float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f, reach = 0.0f;
     for (std::size_t i = 0; i < 3; ++i) {
       const PieceTable::Corner& corner = view_.pieces.corners()[piece.corners[i]];
       const glm::vec3 share(glm::dot(t.edges[0], corner.ray), glm::dot(t.edges[1], corner.ray),
@@ -328,6 +350,7 @@ private:
       const float sum = share.x + share.y + share.z;
       points[i] = {glm::vec3(0.0f), share / sum, 0, 3};
       h[i] = corner.landing * (t.determinant / sum);
+      reach = std::max(reach, t.determinant / sum); // rays have length 1
       nearest = std::min(nearest, h[i].z);
       farthest = std::max(farthest, h[i].z);
     }
@@ -337,13 +360,14 @@ private:
       ++out_.hidden;
       return;
     }
-    if (t.opaque && nearest >= view_.near) occlusion_.cover(number, farthest * (1.0f + 1e-5f));
+    if (t.opaque && nearest >= view_.near)
+      occlusion_.cover(number, farthest * (1.0f + rounding), reach * (1.0f + rounding));
     std::array<std::uint32_t, 3> index;
     for (std::size_t i = 0; i < 3; ++i) {
       index[i] = shared({t.number, piece.corners[i], ~0u, ~0u}, t, points[i], h[i]);
     }
     // Pieces run counter-clockwise on the screen.
-    add(index[0], index[1], index[2], t.back);
+    add(t, nearest, index, t.back);
   }
 
   std::uint32_t vertex(const Triangle& t, const Point& point, const glm::vec3& h, std::uint32_t number,
@@ -371,9 +395,9 @@ private:
   std::uint32_t shared(const VertexCache::Key& key, const Triangle& t, const Point& point,
                        const glm::vec3& h) {
     if (!view_.edges) {
-      VertexCache::Entry& entry = cache_.at(key);
-      if (entry.key == key) return entry.emitted;
-      entry = {key, static_cast<std::uint32_t>(out_.vertices.size())};
+      VertexCache::Entry& entry = scratch_.cache.at(key);
+      if (entry.key == key && entry.batch == number_) return entry.emitted;
+      entry = {key, number_, static_cast<std::uint32_t>(out_.vertices.size())};
     }
     const auto next = static_cast<std::uint32_t>(out_.vertices.size());
     const glm::vec3& w = point.in_triangle;
@@ -390,9 +414,11 @@ private:
   const FrameGeometry& geometry_;
   const CellView& view_;
   Occlusion& occlusion_;
+  Scratch& scratch_;
+  std::vector<std::uint32_t>& entries_;
+  std::uint32_t number_; ///< of the batch
   EmittedBatch& out_;
-  std::vector<std::uint32_t> entries_;
-  VertexCache cache_;
+  float item_nearest_ = 0.0f; ///< no triangle of the item is nearer to the eye, metres
   bool flat_ = false;
   std::uint32_t normal_ = 0;
 };
@@ -403,11 +429,16 @@ constexpr std::uint32_t indices_per_task = 3 * 1024;
 
 void distribute_cells(const FrameGeometry& geometry, std::span<const DrawItem> items, const CellView& view,
                       Occlusion& occlusion, std::vector<EmittedBatch>& batches) {
-  const std::vector<std::span<const DrawItem>> tasks = split_items(items, indices_per_task);
+  const std::vector<TaskItems> tasks = split_items(items, indices_per_task);
   batches.resize(tasks.size());
-  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
-    Task task(geometry, view, occlusion, batches[i]);
-    for (const DrawItem& item : tasks[i]) task.item(item);
+  // From near to far, so that what hides comes before what is hidden.
+  std::atomic<std::size_t> next = 0;
+  tbb::parallel_for(0, tbb::this_task_arena::max_concurrency(), [&](int) {
+    std::unique_ptr<Scratch> scratch;
+    for (std::size_t i = next++; i < tasks.size(); i = next++) {
+      if (!scratch) scratch = std::make_unique<Scratch>();
+      Task(geometry, view, occlusion, *scratch, static_cast<std::uint32_t>(i), batches[i]).run(tasks[i]);
+    }
   });
 }
 

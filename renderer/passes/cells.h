@@ -7,33 +7,17 @@
 // borders are b = 0: what lies on a border lands on it exactly, and so does its neighbour's share.
 #pragma once
 
-#include <atomic>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include "renderer/passes/draw_list.h"
 #include "renderer/passes/emitted.h"
+#include "renderer/passes/occlusion.h"
 #include "renderer/passes/piece_table.h"
 
 namespace cupola::passes {
-
-/// For each piece how far an opaque triangle that covers all of it reaches: what is behind is never seen.
-/// Depths are w of the piece's projection. Thread-safe.
-class Occlusion {
-public:
-  void reset(std::size_t pieces);
-  [[nodiscard]] bool hides(std::uint32_t piece, float nearest) const {
-    return nearest > depths_[piece].load(std::memory_order_relaxed);
-  }
-  void cover(std::uint32_t piece, float farthest);
-
-private:
-  std::unique_ptr<std::atomic<float>[]> depths_;
-  std::size_t size_ = 0;
-};
 
 struct CellView {
   const PieceTable& pieces;
@@ -44,7 +28,8 @@ struct CellView {
 };
 
 /// Distributes everything in the list; batches stand in drawing order and reuse their memory. Portions have
-/// group 0. `occlusion` is read, and written by opaque triangles.
+/// group 0. `occlusion` is read, and written by opaque triangles; it belongs to view.pieces. Which hidden
+/// parts are left out depends on the threads, what is seen does not.
 void distribute_cells(const FrameGeometry& geometry, std::span<const DrawItem> items, const CellView& view,
                       Occlusion& occlusion, std::vector<EmittedBatch>& batches);
 

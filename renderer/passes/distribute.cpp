@@ -27,14 +27,16 @@ std::vector<Strip> strips_of(const plan::PieceSet& set) {
 /// Distributes the items of one batch.
 class Task {
 public:
-  Task(const FrameGeometry& geometry, const StripView& view, std::span<const Strip> strips, EmittedBatch& out)
+  Task(const FrameGeometry& geometry, const StripView& view, std::span<const Strip> strips,
+       std::uint32_t first_run, EmittedBatch& out)
       : geometry_(geometry)
       , view_(view)
       , strips_(strips)
       , out_(out)
       , to_axes_(view.azimuths.axes_from_view() * view.view_from_world)
       , groups_((strips.size() + static_cast<std::size_t>(view.group_size) - 1) /
-                static_cast<std::size_t>(view.group_size)) {
+                static_cast<std::size_t>(view.group_size))
+      , run_(first_run) {
     out_.vertices.clear();
     out_.indices.clear();
     out_.portions.clear();
@@ -42,12 +44,15 @@ public:
   }
 
   void item(const DrawItem& item) {
+    if (started_ && item.material != material_) {
+      finish();
+      ++run_;
+    }
+    material_ = item.material;
+    started_ = true;
     if (item.radius >= 0.0f && !view_.azimuths.full_turn() &&
         view_.azimuths.sphere(to_axes_ * (item.center - view_.eye), item.radius).count == 0)
       return;
-    if (started_ && item.material != material_) finish();
-    material_ = item.material;
-    started_ = true;
     const bool double_sided = geometry_.materials[item.material].double_sided;
     for (std::uint32_t i = 0; i + 2 < item.index_count; i += 3) triangle(item.first_index + i, double_sided);
   }
@@ -62,7 +67,6 @@ public:
       out_.indices.insert(out_.indices.end(), indices.begin(), indices.end());
       indices.clear();
     }
-    ++run_;
   }
 
 private:
@@ -153,7 +157,7 @@ private:
   EmittedBatch& out_;
   glm::mat3 to_axes_;
   std::vector<std::vector<std::uint32_t>> groups_; ///< indices of the run in the making
-  std::uint32_t material_ = 0, run_ = 0;
+  std::uint32_t material_ = 0, run_;
   bool started_ = false;
   std::array<Azimuth, 1024> azimuths_{};
   std::array<Shared, 4096> shared_{};
@@ -166,11 +170,11 @@ constexpr std::uint32_t indices_per_task = 3 * 2048;
 void distribute_strips(const FrameGeometry& geometry, std::span<const DrawItem> items, const StripView& view,
                        std::vector<EmittedBatch>& batches) {
   const std::vector<Strip> strips = strips_of(view.set);
-  const std::vector<std::span<const DrawItem>> tasks = split_items(items, indices_per_task);
+  const std::vector<TaskItems> tasks = split_items(items, indices_per_task);
   batches.resize(tasks.size());
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
-    Task task(geometry, view, strips, batches[i]);
-    for (const DrawItem& item : tasks[i]) task.item(item);
+    Task task(geometry, view, strips, tasks[i].first_run, batches[i]);
+    for (const DrawItem& item : tasks[i].items) task.item(item);
     task.finish();
   });
 }

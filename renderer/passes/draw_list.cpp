@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -13,25 +14,52 @@ namespace {
 /// Shells double in distance; within one, the order does not matter to hiding.
 int shell(float distance) { return distance < 1.0f ? 0 : static_cast<int>(std::log2(distance)) + 1; }
 
+/// Positions of a scene's corners by their place in the index list, moving ones from the pose.
+class Corners {
+public:
+  Corners(const content::Scene& scene, std::span<const content::Vertex> moving)
+      : scene_(scene)
+      , moving_(moving) {}
+  [[nodiscard]] const glm::vec3& operator[](std::uint32_t corner) const {
+    const std::uint32_t index = scene_.geometry.indices[corner];
+    return index < scene_.static_vertices || moving_.empty()
+               ? scene_.geometry.vertices[index].position
+               : moving_[index - scene_.static_vertices].position;
+  }
+
+private:
+  const content::Scene& scene_;
+  std::span<const content::Vertex> moving_;
+};
+
+/// No point of the cluster is nearer to the eye. By its sphere; around the eye (a sky, a wide ground) by the
+/// spheres of its triangles.
+float nearest_of(const content::Cluster& cluster, const Corners& corners, const glm::vec3& eye) {
+  const float distance = glm::distance(cluster.center, eye) - cluster.radius;
+  if (distance > 0.0f) return distance;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::uint32_t i = cluster.first_index; i < cluster.first_index + cluster.index_count; i += 3) {
+    const glm::vec3 centre = (corners[i] + corners[i + 1] + corners[i + 2]) / 3.0f;
+    const float radius = std::max({glm::distance(corners[i], centre), glm::distance(corners[i + 1], centre),
+                                   glm::distance(corners[i + 2], centre)});
+    nearest = std::min(nearest, glm::distance(centre, eye) - radius);
+  }
+  return std::max(0.0f, nearest);
+}
+
 struct BlendedTriangle {
   float distance;
   std::uint32_t first_index;
   std::uint32_t material;
 };
 
-void order_blended(const content::Scene& scene, std::span<const content::Cluster> clusters,
-                   std::span<const content::Vertex> moving, const glm::vec3& eye, DrawList& out) {
-  const content::Geometry& geometry = scene.geometry;
-  const auto position = [&](std::uint32_t corner) {
-    const std::uint32_t index = geometry.indices[corner];
-    return index < scene.static_vertices || moving.empty() ? geometry.vertices[index].position
-                                                           : moving[index - scene.static_vertices].position;
-  };
+void order_blended(const content::Geometry& geometry, std::span<const content::Cluster> clusters,
+                   const Corners& corners, const glm::vec3& eye, DrawList& out) {
   std::vector<BlendedTriangle> triangles;
   for (const content::Cluster& cluster : clusters)
     for (std::uint32_t i = 0; i < cluster.index_count; i += 3) {
       const std::uint32_t first = cluster.first_index + i;
-      const glm::vec3 centre = (position(first) + position(first + 1) + position(first + 2)) / 3.0f;
+      const glm::vec3 centre = (corners[first] + corners[first + 1] + corners[first + 2]) / 3.0f;
       triangles.push_back({glm::distance(centre, eye), first, cluster.material});
     }
   std::stable_sort(triangles.begin(), triangles.end(),
@@ -57,6 +85,7 @@ void order_for_eye(const content::Scene& scene, std::span<const content::Cluster
   out.opaque.clear();
   out.blended.clear();
   out.blended_indices.clear();
+  const Corners corners(scene, moving);
   const auto is_blended = [&](const content::Cluster& cluster) {
     return scene.materials[cluster.material].alpha_mode == content::AlphaMode::blend;
   };
@@ -73,8 +102,8 @@ void order_for_eye(const content::Scene& scene, std::span<const content::Cluster
   std::vector<Key> keys;
   keys.reserve(clusters.size());
   for (auto it = clusters.begin(); it != first_blended; ++it) {
-    const float distance = std::max(0.0f, glm::distance(it->center, eye) - it->radius);
-    keys.push_back({shell(distance), it->material, static_cast<std::size_t>(it - clusters.begin())});
+    keys.push_back({shell(nearest_of(*it, corners, eye)), it->material,
+                    static_cast<std::size_t>(it - clusters.begin())});
   }
   std::sort(keys.begin(), keys.end());
   for (const Key& key : keys) {
@@ -84,7 +113,7 @@ void order_for_eye(const content::Scene& scene, std::span<const content::Cluster
   }
   if (first_blended == clusters.end()) return;
   out.blended_first = first_blended->first_index;
-  order_blended(scene, {first_blended, clusters.end()}, moving, eye, out);
+  order_blended(scene.geometry, {first_blended, clusters.end()}, corners, eye, out);
 }
 
 std::vector<Run> join_runs(std::span<const DrawItem> items) {

@@ -2,6 +2,7 @@
 // no GL.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -27,7 +28,7 @@ struct EmittedVertex {
 /// Triangles of one material in one group of strips.
 struct EmittedPortion {
   std::uint32_t material = 0;
-  std::uint32_t run = 0; ///< counts the changes of material within the batch
+  std::uint32_t run = 0; ///< drawn in rising order over all batches; equal ones have one material
   std::uint32_t group = 0;
   std::uint32_t first_index = 0, index_count = 0;
 };
@@ -36,9 +37,9 @@ struct EmittedPortion {
 struct EmittedBatch {
   std::vector<EmittedVertex> vertices;
   std::vector<std::uint32_t> indices;
-  std::vector<EmittedPortion> portions; ///< by run, then by group
-  std::uint64_t pairs = 0;              ///< (triangle, piece), found
-  std::uint64_t hidden = 0;             ///< of them, left out behind an opaque triangle
+  std::vector<EmittedPortion> portions;
+  std::uint64_t pairs = 0;  ///< (triangle, piece), found
+  std::uint64_t hidden = 0; ///< of them, left out behind an opaque triangle
 };
 
 /// Geometry as it is this frame: moving vertices come from the pose, blended triangles stand in today's
@@ -63,8 +64,17 @@ struct FrameGeometry {
 /// As the vertex program reads it: 2_10_10_10_REV, signed normalised.
 [[nodiscard]] std::uint32_t pack_normal(const glm::vec3& normal);
 
-/// The items in portions of about `indices` indices, in order: work for one task each.
-[[nodiscard]] std::vector<std::span<const DrawItem>> split_items(std::span<const DrawItem> items,
-                                                                 std::uint32_t indices);
+/// The colour of a point of a triangle; weights sum to 1.
+[[nodiscard]] std::uint32_t mix_color(const std::array<const content::Vertex*, 3>& of,
+                                      const glm::vec3& weights);
+
+/// Work for one task: neighbours in a list of items.
+struct TaskItems {
+  std::span<const DrawItem> items;
+  std::uint32_t first_run; ///< how often the material has changed before the first of them
+};
+
+/// The items in portions of about `indices` indices, in order.
+[[nodiscard]] std::vector<TaskItems> split_items(std::span<const DrawItem> items, std::uint32_t indices);
 
 } // namespace cupola::passes

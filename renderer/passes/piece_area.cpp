@@ -92,12 +92,31 @@ void PieceArea::prepare(const Programs& programs, const projection::Map& map, co
     glBindSampler(0, 0);
     draw(looked_up_);
   }
-  if (all_.count > 0) {
-    glUseProgram(programs.flat.id());
-    glProgramUniform3fv(programs.flat.id(), location_color, 1, glm::value_ptr(background));
-    set_depth(programs.flat, 0.0f);
-    draw(all_);
+  glEnable(GL_CULL_FACE);
+}
+
+void PieceArea::draw_background(const Programs& programs, const glm::vec3& background,
+                                const Occlusion* occlusion) const {
+  std::vector<GLint> firsts;
+  std::vector<GLsizei> counts;
+  for (GLint corner = 0; corner < all_.count; corner += 3) {
+    if (occlusion != nullptr && occlusion->covers(static_cast<std::uint32_t>(corner / 3))) continue;
+    if (!firsts.empty() && firsts.back() + counts.back() == corner) {
+      counts.back() += 3;
+    } else {
+      firsts.push_back(corner);
+      counts.push_back(3);
+    }
   }
+  if (firsts.empty()) return;
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_FALSE);
+  glUseProgram(programs.flat.id());
+  glProgramUniform3fv(programs.flat.id(), location_color, 1, glm::value_ptr(background));
+  set_depth(programs.flat, 0.0f);
+  glBindVertexArray(array_.id());
+  glMultiDrawArrays(GL_TRIANGLES, firsts.data(), counts.data(), static_cast<GLsizei>(firsts.size()));
+  glDepthMask(GL_TRUE);
   glEnable(GL_CULL_FACE);
 }
 

@@ -11,25 +11,51 @@ namespace {
 
 constexpr double margin = 1e-6; ///< radians by which cones are wider than their rays: rounding to floats
 
+PieceTable::Cone cone(const glm::dvec3& axis, double cosine) {
+  const double angle = std::acos(std::clamp(cosine, -1.0, 1.0)) + margin;
+  return {glm::vec3(axis), static_cast<float>(std::sin(angle)),
+          cosine <= -1.0 ? -1.0f : static_cast<float>(std::cos(angle))};
+}
+
+/// About the three rays of a piece.
+PieceTable::Cone cone(const plan::PieceSet& set, const std::array<std::uint32_t, 3>& triangle) {
+  glm::dvec3 axis(0.0);
+  for (const std::uint32_t corner : triangle) axis += set.corners[corner].ray;
+  axis = glm::normalize(axis);
+  double cosine = 1.0;
+  for (const std::uint32_t corner : triangle)
+    cosine = std::min(cosine, glm::dot(axis, set.corners[corner].ray));
+  return cone(axis, cosine);
+}
+
 } // namespace
 
 PieceTable::PieceTable(const plan::PieceSet& set) {
   groups_.reserve(set.groups.size());
-  for (const plan::PieceGroup& group : set.groups) {
-    const double angle = std::acos(std::clamp(group.cosine, -1.0, 1.0)) + margin;
-    groups_.push_back({glm::vec3(group.axis), static_cast<float>(std::sin(angle)),
-                       group.cosine <= -1.0 ? -1.0f : static_cast<float>(std::cos(angle)), group.first,
-                       group.count, group.next});
+  for (const plan::PieceGroup& group : set.groups)
+    groups_.push_back({cone(group.axis, group.cosine), group.first, group.count, group.next, no_group});
+  for (std::uint32_t i = 0; i < groups_.size(); ++i) {
+    if (groups_[i].is_leaf(i)) continue;
+    groups_[i + 1].parent = groups_[groups_[i + 1].next].parent = i;
   }
   corners_.reserve(set.corners.size());
   for (const plan::Corner& corner : set.corners)
     corners_.push_back({glm::vec3(corner.ray), glm::vec3(corner.weight * glm::dvec3(corner.screen, 1.0))});
   pieces_.reserve(set.pieces.size());
+  cones_.reserve(set.pieces.size());
   for (std::size_t i = 0; i < set.pieces.size(); ++i) {
     const plan::Piece& piece = set.pieces[i];
+    cones_.push_back(cone(set, set.triangles[i]));
     pieces_.push_back({{glm::vec3(piece.planes[0]), glm::vec3(piece.planes[1]), glm::vec3(piece.planes[2])},
                        set.triangles[i],
-                       glm::determinant(piece.to_screen) > 0.0});
+                       glm::determinant(piece.to_screen) > 0.0,
+                       no_group});
+  }
+  for (std::uint32_t i = 0; i < groups_.size(); ++i) {
+    const Group& group = groups_[i];
+    if (!group.is_leaf(i)) continue;
+    for (std::uint32_t piece = group.first; piece < group.first + group.count; ++piece)
+      pieces_[piece].leaf = i;
   }
 }
 

@@ -13,17 +13,25 @@ namespace cupola::passes {
 
 class PieceTable {
 public:
-  /// A subtree of pieces with a cone about all its rays: plan::PieceGroup in floats.
-  struct Group {
+  static constexpr std::uint32_t no_group = ~0u;
+
+  /// A cone about rays, through the eye.
+  struct Cone {
     glm::vec3 axis;
     float sine, cosine; ///< of the half angle; cosine -1: everything
+  };
+  /// A subtree of pieces with a cone about all its rays: plan::PieceGroup in floats.
+  struct Group : Cone {
     std::uint32_t first, count, next;
+    std::uint32_t parent = no_group;
+    [[nodiscard]] bool is_leaf(std::uint32_t own_number) const { return next == own_number + 1; }
   };
   struct Piece {
     /// Barycentric coordinates of a point of view space: dot(planes[i], v) for corner i.
     std::array<glm::vec3, 3> planes;
     std::array<std::uint32_t, 3> corners;
-    bool mirrored; ///< its picture is: winding on the screen is turned round
+    bool mirrored;                 ///< its picture is: winding on the screen is turned round
+    std::uint32_t leaf = no_group; ///< the smallest group that holds it
   };
   struct Corner {
     glm::vec3 ray;
@@ -35,6 +43,7 @@ public:
 
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  [[nodiscard]] const std::vector<Cone>& cones() const { return cones_; } ///< of each piece
   [[nodiscard]] const std::vector<Corner>& corners() const { return corners_; }
 
   /// Whether a group's cone may meet a sphere.
@@ -43,6 +52,7 @@ public:
 private:
   std::vector<Group> groups_;
   std::vector<Piece> pieces_;
+  std::vector<Cone> cones_;
   std::vector<Corner> corners_;
 };
 

@@ -193,8 +193,7 @@ struct Move {
   std::size_t batch, portion, to;
 };
 
-/// Joins the portions of neighbouring batches: by run over all batches, then by group. Inside a group the
-/// order of the batches is kept.
+/// Joins the portions of all batches: by run, then by group. Inside a group the order of the batches is kept.
 std::vector<EmittedDraw> arrange(const std::vector<EmittedBatch>& batches, std::vector<Move>& moves) {
   struct Key {
     std::uint32_t run, group;
@@ -205,17 +204,9 @@ std::vector<EmittedDraw> arrange(const std::vector<EmittedBatch>& batches, std::
     }
   };
   std::vector<Key> keys;
-  std::uint32_t run = 0, last_material = ~0u;
-  for (std::size_t batch = 0; batch < batches.size(); ++batch) {
-    std::uint32_t last_run = ~0u;
-    for (std::size_t i = 0; i < batches[batch].portions.size(); ++i) {
-      const EmittedPortion& portion = batches[batch].portions[i];
-      if (portion.run != last_run && portion.material != last_material) ++run;
-      last_run = portion.run;
-      last_material = portion.material;
-      keys.push_back({run, portion.group, batch, i});
-    }
-  }
+  for (std::size_t batch = 0; batch < batches.size(); ++batch)
+    for (std::size_t i = 0; i < batches[batch].portions.size(); ++i)
+      keys.push_back({batches[batch].portions[i].run, batches[batch].portions[i].group, batch, i});
   std::sort(keys.begin(), keys.end());
   std::vector<EmittedDraw> draws;
   std::size_t to = 0;
@@ -291,25 +282,22 @@ DrawCounts ScenePass::draw_batches(const FrameScene& scene, const std::vector<Em
 }
 
 template <class F>
-DrawCounts ScenePass::draw_distributed(const FrameScene& scene, std::uint64_t max_pairs,
-                                       const StripTarget& target, const F& distribute) {
+DrawCounts ScenePass::draw_distributed(const FrameScene& scene, std::span<const DrawItem> items,
+                                       std::uint64_t max_pairs, const StripTarget& target,
+                                       const F& distribute) {
   DrawCounts counts;
   // In portions: memory stays below the ceiling, and nothing is ever missing.
   const std::uint64_t worst_portion = std::max<std::uint64_t>(max_pairs / 8, 1);
-  for (const auto* items : {&scene.list.opaque, &scene.list.blended}) {
-    std::span<const DrawItem> left(*items);
-    while (!left.empty()) {
-      std::uint64_t triangles = 0;
-      std::size_t take = 0;
-      while (take < left.size() && (take == 0 || triangles < worst_portion))
-        triangles += left[take++].index_count / 3;
-      distribute(left.first(take));
-      counts += draw_batches(scene, batches_, target);
-      left = left.subspan(take);
-    }
+  while (!items.empty()) {
+    std::uint64_t triangles = 0;
+    std::size_t take = 0;
+    while (take < items.size() && (take == 0 || triangles < worst_portion))
+      triangles += items[take++].index_count / 3;
+    distribute(items.first(take));
+    counts += draw_batches(scene, batches_, target);
+    items = items.subspan(take);
   }
   set_blending(false);
-  counts.bytes = emitted_vertices_.bytes() + emitted_indices_.bytes();
   return counts;
 }
 
@@ -324,22 +312,32 @@ DrawCounts ScenePass::draw_strips_cpu(const FrameScene& scene, const plan::Piece
                            {piece.bounds.x * scale, viewport[1], piece.bounds.width * scale, viewport[3]});
   const StripView view{set,        azimuths,          scene.eye,    scene.view_from_world,
                        scene.near, target.group_size, scene.edges()};
-  return draw_distributed(scene, max_pairs, target, [&](std::span<const DrawItem> items) {
+  const auto distribute = [&](std::span<const DrawItem> items) {
     distribute_strips(scene.geometry, items, view, batches_);
-  });
+  };
+  DrawCounts counts = draw_distributed(scene, scene.list.opaque, max_pairs, target, distribute);
+  counts += draw_distributed(scene, scene.list.blended, max_pairs, target, distribute);
+  counts.bytes = emitted_vertices_.bytes() + emitted_indices_.bytes();
+  return counts;
 }
 
 DrawCounts ScenePass::draw_cells_cpu(const FrameScene& scene, const PieceTable& pieces, Occlusion& occlusion,
-                                     std::uint64_t max_pairs, int scale) {
+                                     std::uint64_t max_pairs, int scale,
+                                     const std::function<void()>& background) {
   glFrontFace(GL_CCW);
   std::array<GLint, 4> scissor{};
   glGetIntegerv(GL_SCISSOR_BOX, scissor.data());
   const StripTarget target{scale, 1, {scissor.begin(), scissor.end()}};
   const CellView view{pieces, scene.eye, scene.view_from_world, scene.near, scene.edges()};
-  occlusion.reset(pieces.pieces().size());
-  return draw_distributed(scene, max_pairs, target, [&](std::span<const DrawItem> items) {
+  occlusion.reset(pieces);
+  const auto distribute = [&](std::span<const DrawItem> items) {
     distribute_cells(scene.geometry, items, view, occlusion, batches_);
-  });
+  };
+  DrawCounts counts = draw_distributed(scene, scene.list.opaque, max_pairs, target, distribute);
+  background();
+  counts += draw_distributed(scene, scene.list.blended, max_pairs, target, distribute);
+  counts.bytes = emitted_vertices_.bytes() + emitted_indices_.bytes();
+  return counts;
 }
 
 } // namespace cupola::passes

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <span>
 #include <vector>
@@ -89,9 +90,9 @@ public:
                              const StripAzimuths& azimuths, std::uint64_t max_pairs, int scale);
 
   /// Triangular pieces by the CPU engine, into the current GL viewport and scissor. `occlusion` is the
-  /// viewport's own.
+  /// viewport's own. `background` is called when all that is opaque has been drawn, before the blended.
   DrawCounts draw_cells_cpu(const FrameScene& scene, const PieceTable& pieces, Occlusion& occlusion,
-                            std::uint64_t max_pairs, int scale);
+                            std::uint64_t max_pairs, int scale, const std::function<void()>& background);
 
   void bind_program(const FrameScene& scene, VertexPath path, std::uint32_t material, float style_scale,
                     std::span<const glm::mat3> to_screen, std::span<const int> layers);
@@ -110,8 +111,8 @@ private:
                           const StripTarget& target);
   /// Calls distribute(items) and draws what it leaves in `batches_`, portion by portion.
   template <class F>
-  DrawCounts draw_distributed(const FrameScene& scene, std::uint64_t max_pairs, const StripTarget& target,
-                              const F& distribute);
+  DrawCounts draw_distributed(const FrameScene& scene, std::span<const DrawItem> items,
+                              std::uint64_t max_pairs, const StripTarget& target, const F& distribute);
   /// Copies the vertices of all batches; where each batch's first one is.
   std::vector<std::size_t> upload_vertices(const std::vector<EmittedBatch>& batches);
 

@@ -37,7 +37,7 @@ Result distribute(const plan::PieceSet& set, const tests::Soup& soup, std::vecto
   const passes::PieceTable table(set);
   const passes::CellView view{table, glm::vec3(0.0f), glm::mat3(1.0f), near, false};
   passes::Occlusion occlusion;
-  occlusion.reset(set.pieces.size());
+  occlusion.reset(table);
   Result out;
   passes::distribute_cells(soup.geometry(), items, view, occlusion, out.batches);
   for (const passes::EmittedBatch& batch : out.batches) {
@@ -137,7 +137,8 @@ TEST_CASE("every pixel shows what lies nearest on its ray") {
 TEST_CASE("pairs are as many as there must be") {
   const plan::PieceSet set = fisheye(180.0);
   for (const float extent : {0.05f, 0.5f, 4.0f}) {
-    const tests::Soup soup = tests::random_soup(11, 120, extent);
+    tests::Soup soup = tests::random_soup(11, 120, extent);
+    soup.materials[0].alpha_mode = content::AlphaMode::mask; // hides nothing
     std::uint64_t exact = 0;
     for (std::size_t triangle = 0; triangle < soup.triangles(); ++triangle)
       for (const plan::Piece& piece : set.pieces)
@@ -164,10 +165,50 @@ TEST_CASE("what lies behind a wall is not emitted, what lies before it is") {
   behind.add({-1, -1, -11}, {1, -1, -11}, {0, 1, -11});
   before.add({-1, -1, -9}, {1, -1, -9}, {0, 1, -9});
   CHECK(distribute(set, behind).emitted == alone);
-  CHECK(distribute(set, behind).pairs > wall.pairs);
   CHECK(distribute(set, before).emitted > alone);
   behind.materials[0].alpha_mode = content::AlphaMode::blend;
   CHECK(distribute(set, behind).emitted > alone);
+}
+
+TEST_CASE("an item all behind a wall is left out, one half before it is not") {
+  const plan::PieceSet set = fisheye(180.0);
+  tests::Soup soup;
+  soup.materials[0].double_sided = true;
+  soup.add({-1000, -1000, -10}, {1000, -1000, -10}, {0, 2000, -10});
+  soup.add({-1, -1, -30}, {1, -1, -30}, {0, 1, -30});
+  soup.add({-1, -1, -30}, {1, -1, -9}, {0, 1, -9});
+  const passes::DrawItem wall{0, 0, 3}, behind{0, 3, 3, {0, 0, -30}, 2.0f},
+      through{0, 6, 3, {0, 0, -19.5f}, 11.5f};
+  const Result alone = distribute(set, soup, {wall});
+  CHECK(alone.pairs > 100);
+  CHECK(distribute(set, soup, {wall, behind}).pairs == alone.pairs);
+  CHECK(distribute(set, soup, {behind, wall}).pairs > alone.pairs); // hides only what comes after it
+  CHECK(distribute(set, soup, {wall, through}).emitted > alone.emitted);
+}
+
+TEST_CASE("opaque parts come from near to far, blended ones as they stand") {
+  const plan::PieceSet set = fisheye(180.0);
+  tests::Soup soup;
+  soup.add({-1, -1, -90}, {1, -1, -90}, {0, 1, -90});
+  soup.add({-1, -1, -9}, {1, -1, -9}, {0, 1, -9});
+  const auto depths = [&] {
+    std::vector<float> out;
+    const Result result = distribute(set, soup);
+    REQUIRE(result.batches.size() == 1);
+    std::vector<passes::EmittedPortion> portions = result.batches[0].portions;
+    std::stable_sort(portions.begin(), portions.end(),
+                     [](const auto& a, const auto& b) { return a.run < b.run; });
+    for (const passes::EmittedPortion& portion : portions)
+      out.push_back(result.batches[0].vertices[result.batches[0].indices[portion.first_index]].position.w);
+    return out;
+  };
+  const std::vector<float> opaque = depths();
+  REQUIRE(opaque.size() == 2);
+  CHECK(opaque[0] < 0.2f * opaque[1]);
+  soup.materials[0].alpha_mode = content::AlphaMode::blend;
+  const std::vector<float> blended = depths();
+  REQUIRE(blended.size() == 1);
+  CHECK(blended[0] == doctest::Approx(opaque[1]));
 }
 
 TEST_CASE("an item whose sphere is known finds the same pairs") {

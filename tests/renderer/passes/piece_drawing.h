@@ -87,7 +87,7 @@ public:
   }
 
   Bytes by_cpu() {
-    return drawn([&] { engines_.pass->draw_cells_cpu(*frame_, table_, occlusion_, 64'000'000, 1); });
+    return drawn([&] { engines_.pass->draw_cells_cpu(*frame_, table_, occlusion_, 64'000'000, 1, [] {}); });
   }
   Bytes by_gpu(std::uint64_t max_pairs = 64'000'000) {
     return drawn([&] { counts = gpu_.draw(*engines_.compute, *engines_.pass, *frame_, max_pairs, 1.0f); });
