@@ -43,18 +43,11 @@ struct Triangle {
   bool back; ///< seen from behind
 };
 
-/// Shells of depth: what is nearer is drawn earlier, so that little is shaded in vain.
-constexpr std::size_t shells = 32;
-std::size_t shell_of(float depth) {
-  const float octaves = std::log2(std::max(depth, 1.0f));
-  return std::min(static_cast<std::size_t>(shells_per_octave * octaves), shells - 1);
-}
-
 /// What a thread keeps from task to task.
 struct Scratch {
   VertexCache cache;
-  std::array<std::vector<std::uint32_t>, shells> indices; ///< of the run in the making, by shell
-  std::vector<std::uint32_t> entries;                     ///< groups that the item is tried against
+  std::array<std::vector<std::uint32_t>, depth_shells> indices; ///< of the run in the making, by shell
+  std::vector<std::uint32_t> entries;                           ///< groups that the item is tried against
 };
 
 /// Distributes the items of one batch.
@@ -89,7 +82,7 @@ private:
   /// Indices of one material go to the batch: shell by shell, or, where the order counts, as they stand.
   void finish(std::uint32_t material, std::uint32_t run) {
     const auto materials = static_cast<std::uint32_t>(geometry_.materials.size());
-    for (std::uint32_t shell = 0; shell < shells; ++shell) {
+    for (std::uint32_t shell = 0; shell < depth_shells; ++shell) {
       std::vector<std::uint32_t>& indices = scratch_.indices[shell];
       if (indices.empty()) continue;
       out_.portions.push_back({material, is_blended(material) ? run : shell * materials + material, 0,
@@ -333,7 +326,8 @@ private:
 
   void add(const Triangle& t, float depth, std::array<std::uint32_t, 3> index, bool turned) {
     if (turned) std::swap(index[1], index[2]);
-    std::vector<std::uint32_t>& indices = scratch_.indices[t.blended ? 0 : shell_of(depth)];
+    std::vector<std::uint32_t>& indices =
+        scratch_.indices[t.blended ? 0 : depth_shell(depth, shells_per_octave)];
     indices.insert(indices.end(), index.begin(), index.end());
   }
 

@@ -11,6 +11,8 @@ namespace cupola::passes {
 
 namespace {
 
+constexpr float shells_per_octave = 1.0f; ///< each costs a draw for every material and group of strips
+
 /// A strip as a test and a projection.
 struct Strip {
   glm::mat3 to_screen;   ///< from view space
@@ -36,6 +38,7 @@ public:
       , to_axes_(view.azimuths.axes_from_view() * view.view_from_world)
       , groups_((strips.size() + static_cast<std::size_t>(view.group_size) - 1) /
                 static_cast<std::size_t>(view.group_size))
+      , indices_(depth_shells * groups_)
       , run_(first_run) {
     out_.vertices.clear();
     out_.indices.clear();
@@ -53,16 +56,21 @@ public:
     if (item.radius >= 0.0f && !view_.azimuths.full_turn() &&
         view_.azimuths.sphere(to_axes_ * (item.center - view_.eye), item.radius).count == 0)
       return;
-    const bool double_sided = geometry_.materials[item.material].double_sided;
+    const content::Material& material = geometry_.materials[item.material];
+    blended_ = material.alpha_mode == content::AlphaMode::blend;
+    const bool double_sided = material.double_sided;
     for (std::uint32_t i = 0; i + 2 < item.index_count; i += 3) triangle(item.first_index + i, double_sided);
   }
 
   /// The triangles of a run go to the batch, group by group.
   void finish() {
-    for (std::uint32_t group = 0; group < groups_.size(); ++group) {
-      std::vector<std::uint32_t>& indices = groups_[group];
+    const auto materials = static_cast<std::uint32_t>(geometry_.materials.size());
+    for (std::uint32_t i = 0; i < indices_.size(); ++i) {
+      std::vector<std::uint32_t>& indices = indices_[i];
       if (indices.empty()) continue;
-      out_.portions.push_back({material_, run_, group, static_cast<std::uint32_t>(out_.indices.size()),
+      const std::uint32_t groups = static_cast<std::uint32_t>(groups_), shell = i / groups;
+      out_.portions.push_back({material_, blended_ ? run_ : shell * materials + material_, i % groups,
+                               static_cast<std::uint32_t>(out_.indices.size()),
                                static_cast<std::uint32_t>(indices.size())});
       out_.indices.insert(out_.indices.end(), indices.begin(), indices.end());
       indices.clear();
@@ -111,7 +119,10 @@ private:
     }
     if (above == 3 || below == 3 || before == 3 || left == 3 || right == 3) return;
     ++out_.pairs;
-    std::vector<std::uint32_t>& indices = groups_[static_cast<std::size_t>(number / view_.group_size)];
+    const std::size_t shell =
+        blended_ ? 0 : depth_shell(std::min({h[0].z, h[1].z, h[2].z}), shells_per_octave);
+    std::vector<std::uint32_t>& indices =
+        indices_[shell * groups_ + static_cast<std::size_t>(number / view_.group_size)];
     for (std::size_t i = 0; i < 3; ++i) indices.push_back(vertex(corners[i], i, h[i], number));
   }
 
@@ -156,9 +167,10 @@ private:
   std::span<const Strip> strips_;
   EmittedBatch& out_;
   glm::mat3 to_axes_;
-  std::vector<std::vector<std::uint32_t>> groups_; ///< indices of the run in the making
+  std::size_t groups_;                              ///< of strips
+  std::vector<std::vector<std::uint32_t>> indices_; ///< of the run in the making, by shell and group
   std::uint32_t material_ = 0, run_;
-  bool started_ = false;
+  bool started_ = false, blended_ = false;
   std::array<Azimuth, 1024> azimuths_{};
   std::array<Shared, 4096> shared_{};
 };

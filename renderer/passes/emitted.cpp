@@ -1,8 +1,13 @@
 #include "renderer/passes/emitted.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cupola::passes {
+
+std::size_t depth_shell(float depth, float per_octave) {
+  return std::min(static_cast<std::size_t>(per_octave * std::log2(std::max(depth, 1.0f))), depth_shells - 1);
+}
 
 std::uint32_t pack_normal(const glm::vec3& normal) {
   const auto part = [](float x) {

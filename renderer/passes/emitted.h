@@ -61,6 +61,11 @@ struct FrameGeometry {
   }
 };
 
+/// Shells of depth, `per_octave` from a metre on: opaque triangles of nearer ones are drawn earlier, so that
+/// little is shaded in vain.
+inline constexpr std::size_t depth_shells = 32;
+[[nodiscard]] std::size_t depth_shell(float depth, float per_octave);
+
 /// As the vertex program reads it: 2_10_10_10_REV, signed normalised.
 [[nodiscard]] std::uint32_t pack_normal(const glm::vec3& normal);
 

@@ -1,10 +1,13 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "renderer/passes/distribute.h"
@@ -117,30 +120,43 @@ TEST_CASE("back faces of single-sided materials are left out") {
   CHECK(distribute(soup, 180.0, false).batches[0].pairs == 0);
 }
 
-TEST_CASE("portions hold whole triangles of one material, by run and then by group") {
+TEST_CASE("portions hold whole triangles of one material: opaque ones by depth, blended ones as they stand") {
   Soup soup = tests::random_soup(9, 60, 0.7f);
   soup.materials.push_back(soup.materials.front());
   const tests::CylinderView cylinder = tests::cylinder_view(360.0, 120.0);
   const passes::StripAzimuths azimuths(cylinder.set, cylinder.map.orientation);
-  const passes::FrameGeometry geometry = soup.geometry();
   const std::vector<passes::DrawItem> items{{0, 0, 60}, {1, 60, 60}, {0, 120, 60}};
   const passes::StripView view{cylinder.set, azimuths, glm::vec3(0.0f), glm::mat3(1.0f), 0.05f,
                                group_size,   false};
-  std::vector<passes::EmittedBatch> batches;
-  passes::distribute_strips(geometry, items, view, batches);
-  REQUIRE(batches.size() == 1);
-  std::uint32_t next = 0, run = 0, last_group = 0;
-  for (const passes::EmittedPortion& portion : batches[0].portions) {
-    CHECK(portion.first_index == next);
-    CHECK(portion.index_count % 3 == 0);
-    CHECK(portion.material == (portion.run == 1 ? 1u : 0u));
-    if (portion.run == run) CHECK(portion.group >= last_group);
-    CHECK(portion.run >= run);
-    run = portion.run;
-    last_group = portion.group;
-    next += portion.index_count;
+  for (const bool blended : {false, true}) {
+    for (content::Material& material : soup.materials)
+      material.alpha_mode = blended ? content::AlphaMode::blend : content::AlphaMode::opaque;
+    const passes::FrameGeometry geometry = soup.geometry();
+    std::vector<passes::EmittedBatch> batches;
+    passes::distribute_strips(geometry, items, view, batches);
+    REQUIRE(batches.size() == 1);
+    const passes::EmittedBatch& batch = batches[0];
+    std::uint32_t next = 0;
+    std::set<std::uint32_t> runs;
+    for (const passes::EmittedPortion& portion : batch.portions) {
+      CHECK(portion.first_index == next);
+      CHECK(portion.index_count % 3 == 0);
+      CHECK(portion.material == portion.run % 2);
+      next += portion.index_count;
+      runs.insert(portion.run);
+      if (blended) continue;
+      for (std::uint32_t i = portion.first_index; i < next; i += 3) {
+        float nearest = std::numeric_limits<float>::infinity();
+        for (std::uint32_t k = 0; k < 3; ++k)
+          nearest = std::min(nearest, batch.vertices[batch.indices[i + k]].position.w);
+        CHECK(portion.run / 2 == passes::depth_shell(nearest, 1.0f));
+      }
+    }
+    CHECK(next == batch.indices.size());
+    CHECK(batch.pairs == batch.indices.size() / 3);
+    if (blended)
+      CHECK(runs == std::set<std::uint32_t>{0, 1, 2});
+    else
+      CHECK(runs.size() > 2);
   }
-  CHECK(next == batches[0].indices.size());
-  CHECK(run == 2);
-  CHECK(batches[0].pairs == batches[0].indices.size() / 3);
 }
