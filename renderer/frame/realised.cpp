@@ -84,17 +84,18 @@ void make_cubemap_target(Realised& made, const Realised* before) {
   const int size = made.cubemap_plan->size;
   const bool layered = quality.cubemap_single_pass && passes::layered_rendering_available();
   int matched = 1;
+  bool folds = false;
   for (const plan::OutputPlan& output : plan.outputs)
     for (const plan::ViewportPlan& viewport : output.viewports)
-      if (plan::may_use_cubemap(viewport))
+      if (plan::may_use_cubemap(viewport)) {
         matched = std::max(matched, plan::matched_cubemap_size(viewport.map, viewport.rect));
+        folds = folds || viewport.folds;
+      }
   made.cubemap_style_scale = static_cast<float>(size) / static_cast<float>(matched);
-  if (before && before->cubemap && before->cubemap->size() == size && before->cubemap->samples() == samples &&
-      before->cubemap->layered() == layered && before->cubemap->mipmaps() == quality.cubemap_mipmaps) {
-    made.cubemap = before->cubemap;
-    return;
-  }
-  made.cubemap = std::make_shared<passes::CubemapTarget>(size, samples, layered, quality.cubemap_mipmaps);
+  const passes::CubemapMake make{size, samples, layered, quality.cubemap_mipmaps, folds};
+  made.cubemap = before && before->cubemap && before->cubemap->make() == make
+                     ? before->cubemap
+                     : std::make_shared<passes::CubemapTarget>(make);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "renderer/gl/shader.h"
 
@@ -35,24 +36,27 @@ void set_map(const projection::Map& map) {
 LookupPass::LookupPass()
     : empty_array_(gl::VertexArray::make()) {}
 
-GLuint LookupPass::program(std::size_t shape) {
-  const auto found = programs_.find(shape);
+GLuint LookupPass::program(std::size_t shape, bool by_depth) {
+  const auto found = programs_.find({shape, by_depth});
   if (found != programs_.end()) return found->second.id();
   constexpr std::size_t bent = projection::index_of<projection::CameraTextureMap>;
   const char* vertex =
       shape == bent ? "renderer/passes/lookup_grid.vert.glsl" : "renderer/passes/fullscreen.vert.glsl";
+  std::vector<std::string> defines{"MAP_SHAPE " + std::to_string(shape)};
+  if (by_depth) defines.emplace_back("CUPOLA_BY_DEPTH");
   model::Result<gl::Program> made = gl::build_program(
       {"lookup",
        {{GL_VERTEX_SHADER, vertex}, {GL_FRAGMENT_SHADER, "renderer/passes/lookup.frag.glsl"}},
-       {"MAP_SHAPE " + std::to_string(shape)}});
+       defines});
   if (!made) {
     problems_.insert(problems_.end(), made.error().begin(), made.error().end());
-    return programs_.emplace(shape, gl::Program()).first->second.id();
+    return programs_.emplace(std::pair{shape, by_depth}, gl::Program()).first->second.id();
   }
-  return programs_.emplace(shape, std::move(*made)).first->second.id();
+  return programs_.emplace(std::pair{shape, by_depth}, std::move(*made)).first->second.id();
 }
 
-/// Triangles in falling order: where the grid folds, the first one is drawn last and stays.
+/// Triangles in falling order: where equally near ones fold over each other, the first is drawn last and
+/// stays.
 const LookupPass::Mesh& LookupPass::mesh(const std::shared_ptr<const projection::CameraGrid>& grid) {
   std::erase_if(meshes_, [](const Mesh& mesh) { return mesh.grid.expired(); });
   for (const Mesh& mesh : meshes_)
@@ -85,16 +89,27 @@ const LookupPass::Mesh& LookupPass::mesh(const std::shared_ptr<const projection:
 }
 
 void LookupPass::draw(const projection::Map& map, const CubemapTarget& cubemap) {
-  const GLuint used = program(map.shape.index());
+  const auto* bent = std::get_if<projection::CameraTextureMap>(&map.shape);
+  const bool by_depth = bent != nullptr && cubemap.depth_texture() != 0;
+  const GLuint used = program(map.shape.index(), by_depth);
   if (used == 0) return;
   glDisable(GL_DEPTH_TEST);
+  if (by_depth) {
+    glClearDepth(0.0);
+    glDepthMask(GL_TRUE);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
+    glBindTextureUnit(1, cubemap.depth_texture());
+    glBindSampler(1, 0);
+  }
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glUseProgram(used);
   set_uniforms(projection::uniforms(map));
   glBindTextureUnit(0, cubemap.texture());
   glBindSampler(0, 0);
-  if (const auto* bent = std::get_if<projection::CameraTextureMap>(&map.shape)) {
+  if (bent != nullptr) {
     const Mesh& drawn = mesh(bent->grid);
     glBindVertexArray(drawn.array.id());
     glDrawElements(GL_TRIANGLES, drawn.count, GL_UNSIGNED_INT, nullptr);

@@ -1,8 +1,8 @@
 // The second half of the image-based method: every pixel of a viewport from the cubemap. Render thread only.
 #pragma once
 
+#include <map>
 #include <memory>
-#include <unordered_map>
 #include <vector>
 
 #include "configs/model/problem.h"
@@ -35,11 +35,12 @@ private:
     GLsizei count = 0;
   };
 
-  GLuint program(std::size_t shape);
+  GLuint program(std::size_t shape, bool by_depth);
   const Mesh& mesh(const std::shared_ptr<const projection::CameraGrid>& grid);
 
-  std::unordered_map<std::size_t, gl::Program> programs_; ///< by shape: a shader for all would compute all
-  std::vector<Mesh> meshes_;                              ///< of grids that are still in use
+  /// By shape (a shader for all would compute all), and whether the nearest of a fold is looked up.
+  std::map<std::pair<std::size_t, bool>, gl::Program> programs_;
+  std::vector<Mesh> meshes_; ///< of grids that are still in use
   gl::VertexArray empty_array_;
   model::Problems problems_;
 };

@@ -98,38 +98,38 @@ void OutputTarget::finish(GLuint downsample_program, GLuint empty_array) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-CubemapTarget::CubemapTarget(int size, int samples, bool layered, bool mipmaps)
-    : size_(size)
-    , samples_(samples)
-    , layered_(layered)
-    , mipmaps_(mipmaps) {
+CubemapTarget::CubemapTarget(const CubemapMake& make)
+    : make_(make) {
+  const auto& [size, samples, layered, mipmaps, depth] = make_;
   texture_ = gl::Texture::make(GL_TEXTURE_CUBE_MAP);
   texture_.label("cubemap");
   glTextureStorage2D(texture_.id(), mipmaps ? std::bit_width(static_cast<unsigned>(size)) : 1, color_format,
                      size, size);
   glTextureParameteri(texture_.id(), GL_TEXTURE_MIN_FILTER, mipmaps ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
   glTextureParameteri(texture_.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  if (depth || (layered && samples == 1)) make_depth_texture();
   for (int face = 0; face < 6; ++face) {
-    faces_[static_cast<std::size_t>(face)] = gl::Framebuffer::make();
-    glNamedFramebufferTextureLayer(faces_[static_cast<std::size_t>(face)].id(), GL_COLOR_ATTACHMENT0,
-                                   texture_.id(), 0, face);
+    gl::Framebuffer& made = faces_[static_cast<std::size_t>(face)];
+    made = gl::Framebuffer::make();
+    glNamedFramebufferTextureLayer(made.id(), GL_COLOR_ATTACHMENT0, texture_.id(), 0, face);
+    if (depth) attach_depth(made.id(), face);
   }
   if (layered) {
     drawn_ = gl::Framebuffer::make();
     if (samples > 1) {
       layered_color_ = gl::Texture::make(GL_TEXTURE_2D_MULTISAMPLE_ARRAY);
       glTextureStorage3DMultisample(layered_color_.id(), samples, color_format, size, size, 6, GL_TRUE);
-      depth_ = gl::Texture::make(GL_TEXTURE_2D_MULTISAMPLE_ARRAY);
-      glTextureStorage3DMultisample(depth_.id(), samples, depth_format, size, size, 6, GL_TRUE);
+      layered_depth_ = gl::Texture::make(GL_TEXTURE_2D_MULTISAMPLE_ARRAY);
+      glTextureStorage3DMultisample(layered_depth_.id(), samples, depth_format, size, size, 6, GL_TRUE);
       glNamedFramebufferTexture(drawn_.id(), GL_COLOR_ATTACHMENT0, layered_color_.id(), 0);
+      glNamedFramebufferTexture(drawn_.id(), GL_DEPTH_ATTACHMENT, layered_depth_.id(), 0);
     } else {
-      depth_ = gl::Texture::make(GL_TEXTURE_CUBE_MAP);
-      glTextureStorage2D(depth_.id(), 1, depth_format, size, size);
       glNamedFramebufferTexture(drawn_.id(), GL_COLOR_ATTACHMENT0, texture_.id(), 0);
+      glNamedFramebufferTexture(drawn_.id(), GL_DEPTH_ATTACHMENT, depth_.id(), 0);
     }
-    glNamedFramebufferTexture(drawn_.id(), GL_DEPTH_ATTACHMENT, depth_.id(), 0);
     return;
   }
+  if (samples == 1 && depth) return;
   face_depth_ = make_renderbuffer(depth_format, size, size, samples);
   if (samples > 1) {
     drawn_ = gl::Framebuffer::make();
@@ -142,25 +142,38 @@ CubemapTarget::CubemapTarget(int size, int samples, bool layered, bool mipmaps)
   }
 }
 
+void CubemapTarget::make_depth_texture() {
+  depth_ = gl::Texture::make(GL_TEXTURE_CUBE_MAP);
+  glTextureStorage2D(depth_.id(), 1, depth_format, make_.size, make_.size);
+  glTextureParameteri(depth_.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(depth_.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void CubemapTarget::attach_depth(GLuint framebuffer, int face) const {
+  glNamedFramebufferTextureLayer(framebuffer, GL_DEPTH_ATTACHMENT, depth_.id(), 0, face);
+}
+
 GLuint CubemapTarget::framebuffer(int face) const {
   return drawn_ ? drawn_.id() : faces_[static_cast<std::size_t>(face)].id();
 }
 
 void CubemapTarget::resolve(int face) const {
-  if (samples_ == 1) return;
+  if (make_.samples == 1) return;
   GLuint source = drawn_.id();
   gl::Framebuffer layer;
-  if (layered_) {
+  if (make_.layered) {
     layer = gl::Framebuffer::make();
     glNamedFramebufferTextureLayer(layer.id(), GL_COLOR_ATTACHMENT0, layered_color_.id(), 0, face);
+    glNamedFramebufferTextureLayer(layer.id(), GL_DEPTH_ATTACHMENT, layered_depth_.id(), 0, face);
     source = layer.id();
   }
-  glBlitNamedFramebuffer(source, faces_[static_cast<std::size_t>(face)].id(), 0, 0, size_, size_, 0, 0, size_,
-                         size_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const int size = make_.size;
+  glBlitNamedFramebuffer(source, faces_[static_cast<std::size_t>(face)].id(), 0, 0, size, size, 0, 0, size,
+                         size, GL_COLOR_BUFFER_BIT | (make_.depth ? GL_DEPTH_BUFFER_BIT : 0u), GL_NEAREST);
 }
 
 void CubemapTarget::finish() const {
-  if (mipmaps_) glGenerateTextureMipmap(texture_.id());
+  if (make_.mipmaps) glGenerateTextureMipmap(texture_.id());
 }
 
 } // namespace cupola::passes

@@ -34,16 +34,25 @@ private:
   gl::Framebuffer drawn_, resolved_framebuffer_, picture_framebuffer_;
 };
 
+/// What a cubemap is made of.
+struct CubemapMake {
+  int size, samples;
+  bool layered;
+  bool mipmaps;
+  bool depth; ///< its depth is kept, to be looked up
+  bool operator==(const CubemapMake&) const = default;
+};
+
 /// A cubemap with its depth; six framebuffers, or one with six layers.
 class CubemapTarget {
 public:
-  CubemapTarget(int size, int samples, bool layered, bool mipmaps);
+  explicit CubemapTarget(const CubemapMake& make);
 
-  [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] int samples() const { return samples_; }
-  [[nodiscard]] bool layered() const { return layered_; }
-  [[nodiscard]] bool mipmaps() const { return mipmaps_; }
+  [[nodiscard]] const CubemapMake& make() const { return make_; }
+  [[nodiscard]] bool layered() const { return make_.layered; }
   [[nodiscard]] GLuint texture() const { return texture_.id(); }
+  /// Reversed depth along each face's axis. 0 unless it is kept.
+  [[nodiscard]] GLuint depth_texture() const { return make_.depth ? depth_.id() : 0; }
   /// To draw face `face` into (any face when layered: all share one framebuffer).
   [[nodiscard]] GLuint framebuffer(int face) const;
   /// After a face has been drawn: resolves its samples. Mipmaps are made by finish().
@@ -51,9 +60,11 @@ public:
   void finish() const;
 
 private:
-  int size_, samples_;
-  bool layered_, mipmaps_;
-  gl::Texture texture_, depth_, layered_color_;
+  void make_depth_texture();
+  void attach_depth(GLuint framebuffer, int face) const;
+
+  CubemapMake make_;
+  gl::Texture texture_, depth_, layered_color_, layered_depth_;
   gl::Renderbuffer face_color_, face_depth_;
   std::array<gl::Framebuffer, 6> faces_;
   gl::Framebuffer drawn_; ///< multisampled, or layered

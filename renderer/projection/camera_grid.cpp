@@ -97,24 +97,55 @@ void CameraGrid::sort_into_bins() {
   for (std::uint32_t i = 0; i < count; ++i) each_bin(i, [&](std::size_t bin) { held_[next[bin]++] = i; });
 }
 
-std::optional<glm::dvec2> CameraGrid::seen_at(glm::dvec2 st) const {
+glm::dvec2 CameraGrid::shares(std::uint32_t triangle, glm::dvec2 st) const {
+  const auto [a, b, c] = this->triangle(triangle);
+  const glm::dvec2 right = landings_[b] - landings_[a], up = landings_[c] - landings_[a];
+  const double area = cross(right, up);
+  const glm::dvec2 from = st - landings_[a];
+  return {cross(from, up) / area, cross(right, from) / area};
+}
+
+glm::dvec2 CameraGrid::place_of(std::uint32_t triangle, glm::dvec2 shares) const {
+  const auto [a, b, c] = this->triangle(triangle);
+  return place(a) + shares.x * (place(b) - place(a)) + shares.y * (place(c) - place(a));
+}
+
+template <class Visit>
+void CameraGrid::visit_covering(glm::dvec2 st, const Visit& visit) const {
   if (!(st.x >= low_.x - border && st.x <= high_.x + border && st.y >= low_.y - border &&
         st.y <= high_.y + border))
-    return std::nullopt;
+    return;
   const std::size_t bin =
       static_cast<std::size_t>(row_of(st.y, bins_)) * static_cast<std::size_t>(bins_.columns) +
       static_cast<std::size_t>(column_of(st.x, bins_));
   for (std::uint32_t i = first_[bin]; i < first_[bin + 1]; ++i) {
-    const auto [a, b, c] = triangle(held_[i]);
-    const glm::dvec2 right = landings_[b] - landings_[a], up = landings_[c] - landings_[a];
-    const double area = cross(right, up);
-    if (area == 0.0) continue;
-    const glm::dvec2 from = st - landings_[a];
-    const double share_b = cross(from, up) / area, share_c = cross(right, from) / area;
-    if (!(share_b >= -border && share_c >= -border && share_b + share_c <= 1.0 + border)) continue;
-    return place(a) + share_b * (place(b) - place(a)) + share_c * (place(c) - place(a));
+    if (twice_area(held_[i]) == 0.0) continue;
+    const glm::dvec2 at = shares(held_[i], st);
+    if (!(at.x >= -border && at.y >= -border && at.x + at.y <= 1.0 + border)) continue;
+    if (!visit(held_[i], at)) return;
   }
-  return std::nullopt;
+}
+
+std::optional<glm::dvec2> CameraGrid::seen_at(glm::dvec2 st) const {
+  std::optional<glm::dvec2> seen;
+  visit_covering(st, [&](std::uint32_t triangle, glm::dvec2 at) {
+    seen = place_of(triangle, at);
+    return false;
+  });
+  return seen;
+}
+
+std::vector<std::uint32_t> CameraGrid::covering(glm::dvec2 st) const {
+  std::vector<std::uint32_t> out;
+  visit_covering(st, [&](std::uint32_t triangle, glm::dvec2) {
+    out.push_back(triangle);
+    return true;
+  });
+  return out;
+}
+
+glm::dvec2 CameraGrid::seen_by(std::uint32_t triangle, glm::dvec2 st) const {
+  return place_of(triangle, shares(triangle, st));
 }
 
 std::optional<glm::dvec2> CameraGrid::lands(glm::dvec2 place) const {

@@ -33,6 +33,11 @@ public:
 
   /// The place that is seen at an image point, by the first triangle that covers it. nullopt where none does.
   [[nodiscard]] std::optional<glm::dvec2> seen_at(glm::dvec2 st) const;
+  /// All triangles that cover an image point, in rising order; those that share a border meet there.
+  [[nodiscard]] std::vector<std::uint32_t> covering(glm::dvec2 st) const;
+  /// The place that is seen at an image point by one triangle, continued beyond its borders. Precondition: it
+  /// is not flat.
+  [[nodiscard]] glm::dvec2 seen_by(std::uint32_t triangle, glm::dvec2 st) const;
   /// Where a place of the flat picture lands. nullopt outside it.
   [[nodiscard]] std::optional<glm::dvec2> lands(glm::dvec2 place) const;
 
@@ -47,6 +52,12 @@ private:
   [[nodiscard]] int column_of(double s, const Bins& bins) const;
   [[nodiscard]] int row_of(double t, const Bins& bins) const;
   void sort_into_bins();
+  /// Calls visit(triangle, place) for each triangle that covers the point, until it returns false.
+  template <class Visit>
+  void visit_covering(glm::dvec2 st, const Visit& visit) const;
+  /// Barycentric coordinates of corners 1 and 2. Precondition: the triangle is not flat.
+  [[nodiscard]] glm::dvec2 shares(std::uint32_t triangle, glm::dvec2 st) const;
+  [[nodiscard]] glm::dvec2 place_of(std::uint32_t triangle, glm::dvec2 shares) const;
 
   int columns_, rows_;
   std::vector<glm::dvec2> landings_;

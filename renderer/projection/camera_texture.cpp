@@ -47,6 +47,11 @@ std::optional<glm::dvec3> camera_texture_ray(const CameraTextureMap& map, glm::d
   return perspective_ray(map.base, *place, 1.0);
 }
 
+std::optional<glm::dvec3> camera_texture_ray_by(const CameraTextureMap& map, std::uint32_t triangle,
+                                                glm::dvec2 st, double zoom) {
+  return perspective_ray(map.base, map.grid->seen_by(triangle, st / zoom), 1.0);
+}
+
 std::optional<glm::dvec2> camera_texture_point(const CameraTextureMap& map, const glm::dvec3& eye,
                                                const glm::dvec3& direction, double zoom) {
   const auto place = perspective_point(map.base, eye, direction, 1.0);

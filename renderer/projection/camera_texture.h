@@ -3,10 +3,11 @@
 //
 // Rays are the perspective's, so that a grid without offsets is that perspective, as far as its picture
 // reaches; what no triangle covers shows nothing. Where the grid folds, several places land on one image
-// point: a ray follows the first triangle in the grid's order. Zoom magnifies the picture after it is
-// deformed.
+// point, and what is nearest there is seen; the one ray that camera_texture_ray() knows is that of the first
+// triangle in the grid's order. Zoom magnifies the picture after it is deformed.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -29,6 +30,10 @@ struct CameraTextureMap {
 /// The point of the plane z = -1 that an image point shows, in the shape's axes.
 [[nodiscard]] std::optional<glm::dvec3> camera_texture_ray(const CameraTextureMap& map, glm::dvec2 st,
                                                            double zoom);
+
+/// The same by one triangle of the grid, continued beyond its borders. Precondition: it is not flat.
+[[nodiscard]] std::optional<glm::dvec3>
+camera_texture_ray_by(const CameraTextureMap& map, std::uint32_t triangle, glm::dvec2 st, double zoom);
 
 /// Inverse, seen from `eye`: the image point where the direction's place in the perspective lands; in a fold
 /// another place may be seen there. nullopt outside the perspective's picture.

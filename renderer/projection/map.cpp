@@ -201,6 +201,27 @@ std::optional<glm::dvec3> ray(const Map& map, glm::dvec2 st) {
   return seen_from_eye(map, shape_ray(map, st));
 }
 
+bool folds(const Map& map) {
+  const auto* texture = std::get_if<CameraTextureMap>(&map.shape);
+  if (!texture) return false;
+  const std::uint32_t count = texture->grid->triangle_count();
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (texture->grid->twice_area(i) < 0.0) return true;
+  return false;
+}
+
+std::vector<std::uint32_t> covering(const Map& map, glm::dvec2 st) {
+  const auto* texture = std::get_if<CameraTextureMap>(&map.shape);
+  if (!texture || !std::isfinite(st.x) || !std::isfinite(st.y)) return {};
+  return texture->grid->covering(st / map.zoom);
+}
+
+std::optional<glm::dvec3> ray_by(const Map& map, std::uint32_t triangle, glm::dvec2 st) {
+  const auto* texture = std::get_if<CameraTextureMap>(&map.shape);
+  if (!texture || !std::isfinite(st.x) || !std::isfinite(st.y)) return std::nullopt;
+  return seen_from_eye(map, camera_texture_ray_by(*texture, triangle, st, map.zoom));
+}
+
 std::optional<glm::dvec3> beyond(const Map& map, glm::dvec2 st, glm::dvec2 inside) {
   if (!std::isfinite(st.x) || !std::isfinite(st.y)) return std::nullopt;
   return seen_from_eye(map, shape_beyond(map, st, inside));

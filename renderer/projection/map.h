@@ -71,6 +71,14 @@ struct Map {
 /// cross), and for NaN.
 [[nodiscard]] std::optional<glm::dvec3> ray(const Map& map, glm::dvec2 st);
 
+/// Where the grid of a camera texture folds, an image point shows several directions, one by each triangle
+/// that covers it, and what is nearest along them is seen: a distance is counted in lengths of its own ray.
+[[nodiscard]] bool folds(const Map& map);
+/// Those triangles, in rising order. Empty for other shapes, and where nothing is shown.
+[[nodiscard]] std::vector<std::uint32_t> covering(const Map& map, glm::dvec2 st);
+/// ray() by one of the triangles, continued beyond its borders. Precondition: covering() names it somewhere.
+[[nodiscard]] std::optional<glm::dvec3> ray_by(const Map& map, std::uint32_t triangle, glm::dvec2 st);
+
 /// ray() continued beyond the limits of what is shown, for corners of pieces that hang over them: as far as
 /// it is smooth and one-to-one about the point. Outside a fisheye's circle to half a turn from its axis, past
 /// the half turn of a cylinder or of longitudes (directions then come again); not over a pole, nor over the

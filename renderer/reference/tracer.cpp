@@ -11,6 +11,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <vector>
 
 #include "renderer/content/lighting.h"
 #include "renderer/reference/surface.h"
@@ -117,19 +118,57 @@ Rect traced(const Request& request, const Picture& picture) {
   return {left - rect.x, top - rect.y, std::max(right - left, 0), std::max(bottom - top, 0)};
 }
 
+/// What a ray meets at a distance in lengths of its direction.
+struct Layer {
+  double distance;
+  glm::vec4 met; ///< colour and opacity
+};
+
+/// What a thread keeps from pixel to pixel.
+struct Scratch {
+  SeenTriangles seen;
+  std::vector<Layer> layers;
+};
+
+/// Colour and opacity of layers, nearest first; colours are multiplied by opacity already.
+glm::vec4 composed(const std::vector<Layer>& layers) {
+  glm::vec3 color(0.0f);
+  float through = 1.0f;
+  for (const Layer& layer : layers) {
+    color += through * layer.met.a * glm::vec3(layer.met);
+    through *= 1.0f - layer.met.a;
+    if (through < opaque_enough) break;
+  }
+  return {color, 1.0f - through};
+}
+
 /// A viewport's pixels and their rays.
 class Camera {
 public:
   explicit Camera(const Request& request)
-      : request_(request) {}
+      : request_(request)
+      , folds_(projection::folds(request.map)) {}
+
+  /// Several rays may go through a place: those of covering().
+  [[nodiscard]] bool folds() const { return folds_; }
 
   /// Ray through a place of the viewport in pixels, y downwards; world axes.
   [[nodiscard]] std::optional<glm::dvec3> ray(glm::dvec2 place) const {
-    const glm::dvec2 st(2.0 * place.x / request_.rect.width - 1.0,
-                        1.0 - 2.0 * place.y / request_.rect.height);
-    const auto view = projection::ray(request_.map, st);
-    if (!view) return std::nullopt;
-    return request_.orientation * *view;
+    return in_world(projection::ray(request_.map, image_point(place)));
+  }
+
+  [[nodiscard]] std::vector<std::uint32_t> covering(glm::dvec2 place) const {
+    return projection::covering(request_.map, image_point(place));
+  }
+
+  /// The ray of one of covering(), and how it changes.
+  [[nodiscard]] std::optional<Ray> ray_by(std::uint32_t triangle, glm::dvec2 place) const {
+    const auto at = [&](glm::dvec2 step) {
+      return in_world(projection::ray_by(request_.map, triangle, image_point(place + step)));
+    };
+    const auto here = at({0.0, 0.0}), right = at({1.0, 0.0}), up = at({0.0, -1.0});
+    if (!here || !right || !up) return std::nullopt;
+    return Ray{*here, *right - *here, *up - *here};
   }
 
   /// Change of the ray per pixel along `step`, over one pixel around `place`; from one side alone at a border
@@ -144,7 +183,16 @@ public:
   }
 
 private:
+  [[nodiscard]] glm::dvec2 image_point(glm::dvec2 place) const {
+    return {2.0 * place.x / request_.rect.width - 1.0, 1.0 - 2.0 * place.y / request_.rect.height};
+  }
+  [[nodiscard]] std::optional<glm::dvec3> in_world(const std::optional<glm::dvec3>& view) const {
+    if (!view) return std::nullopt;
+    return request_.orientation * *view;
+  }
+
   const Request& request_;
+  bool folds_;
 };
 
 } // namespace
@@ -156,10 +204,12 @@ struct Tracer::Impl {
   model::Problems problems;
 
   void build();
-  [[nodiscard]] glm::vec4 trace(const Request& request, const Shading& shading, const Ray& ray,
-                                glm::vec2 pixel, SeenTriangles& seen) const;
+  void trace(const Request& request, const Shading& shading, const Ray& ray, glm::vec2 pixel,
+             Scratch& scratch) const;
+  [[nodiscard]] bool trace_covers(const Request& request, const Camera& camera, const Shading& shading,
+                                  glm::dvec2 place, glm::vec2 pixel, Scratch& scratch) const;
   [[nodiscard]] glm::vec4 pixel(const Request& request, const Camera& camera, const Shading& shading,
-                                SeenTriangles& seen, int x, int y, const glm::vec4& beneath,
+                                Scratch& scratch, int x, int y, const glm::vec4& beneath,
                                 int picture_height) const;
 };
 
@@ -190,19 +240,18 @@ void Tracer::Impl::build() {
        .advice = error == RTC_ERROR_OUT_OF_MEMORY ? "Use a smaller scene or more memory." : ""});
 }
 
-/// Colour and opacity of what the ray meets, nearest first; colours are multiplied by opacity already.
-glm::vec4 Tracer::Impl::trace(const Request& request, const Shading& shading, const Ray& ray, glm::vec2 place,
-                              SeenTriangles& seen) const {
+/// Adds what the ray meets, nearest first, up to something opaque.
+void Tracer::Impl::trace(const Request& request, const Shading& shading, const Ray& ray, glm::vec2 place,
+                         Scratch& scratch) const {
   Shot shot;
   rtcInitIntersectContext(&shot.context);
   shot.context.filter = filter;
   shot.world = &world;
   shot.shading = &shading;
   shot.ray = &ray;
-  shot.seen = &seen;
+  shot.seen = &scratch.seen;
   shot.passed_count = 0;
 
-  glm::vec3 color(0.0f);
   float through = 1.0f;
   RTCRayHit hit{};
   hit.ray = embree_ray(request.eye, ray, request.near);
@@ -210,46 +259,62 @@ glm::vec4 Tracer::Impl::trace(const Request& request, const Shading& shading, co
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene.get(), &shot.context, &hit);
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
-    const SeenTriangle& triangle = seen.get(world, hit.hit.primID, request.eye);
+    const SeenTriangle& triangle = scratch.seen.get(world, hit.hit.primID, request.eye);
     const glm::vec4 met = surface_color(world, shading, triangle, cross_triangle(triangle, ray), place);
-    color += through * met.a * glm::vec3(met);
+    scratch.layers.push_back({hit.ray.tfar, met});
     through *= 1.0f - met.a;
     if (through < opaque_enough || shot.passed_count == max_layers) break;
     shot.passed[shot.passed_count++] = hit.hit.primID;
     hit.ray.tnear = hit.ray.tfar; // the same place again, for surfaces that lie in one plane
     hit.ray.tfar = std::numeric_limits<float>::infinity();
   }
-  return {color, 1.0f - through};
+}
+
+/// All that is met along the rays of a place in a fold, by distance. False where nothing is shown.
+bool Tracer::Impl::trace_covers(const Request& request, const Camera& camera, const Shading& shading,
+                                glm::dvec2 place, glm::vec2 pixel, Scratch& scratch) const {
+  const std::vector<std::uint32_t> covering = camera.covering(place);
+  for (const std::uint32_t triangle : covering)
+    if (const auto ray = camera.ray_by(triangle, place)) trace(request, shading, *ray, pixel, scratch);
+  std::stable_sort(scratch.layers.begin(), scratch.layers.end(),
+                   [](const Layer& a, const Layer& b) { return a.distance < b.distance; });
+  return !covering.empty();
 }
 
 glm::vec4 Tracer::Impl::pixel(const Request& request, const Camera& camera, const Shading& shading,
-                              SeenTriangles& seen, int x, int y, const glm::vec4& beneath,
+                              Scratch& scratch, int x, int y, const glm::vec4& beneath,
                               int picture_height) const {
   const glm::dvec2 corner(x, y);
   const glm::dvec2 center = corner + 0.5;
   const glm::dvec2 right(1.0, 0.0), up(0.0, -1.0);
   Ray ray{};
-  const bool smooth = camera.ray(center).has_value();
+  const bool smooth = !camera.folds() && camera.ray(center).has_value();
   if (smooth) {
     ray.per_x = camera.change(center, right);
     ray.per_y = camera.change(center, up);
   }
-  const glm::vec3 background(request.background);
-  glm::dvec4 sum(0.0);
-  for (int i = 0; i < request.samples; ++i) {
-    const glm::dvec2 place = corner + sample_position(i, request.samples);
+  const auto follow = [&](glm::dvec2 place, glm::vec2 in_picture) {
+    if (camera.folds()) return trace_covers(request, camera, shading, place, in_picture, scratch);
     const auto direction = camera.ray(place);
-    if (!direction) {
-      sum += glm::dvec4(beneath);
-      continue;
-    }
+    if (!direction) return false;
     ray.direction = *direction;
     if (!smooth) {
       ray.per_x = camera.change(place, right);
       ray.per_y = camera.change(place, up);
     }
-    const glm::vec2 in_picture(request.rect.x + place.x, picture_height - (request.rect.y + place.y));
-    const glm::vec4 met = trace(request, shading, ray, in_picture, seen);
+    trace(request, shading, ray, in_picture, scratch);
+    return true;
+  };
+  const glm::vec3 background(request.background);
+  glm::dvec4 sum(0.0);
+  for (int i = 0; i < request.samples; ++i) {
+    const glm::dvec2 place = corner + sample_position(i, request.samples);
+    scratch.layers.clear();
+    if (!follow(place, {request.rect.x + place.x, picture_height - (request.rect.y + place.y)})) {
+      sum += glm::dvec4(beneath);
+      continue;
+    }
+    const glm::vec4 met = composed(scratch.layers);
     sum += glm::dvec4(glm::vec3(met) + (1.0f - met.a) * background, met.a);
   }
   return glm::vec4(sum / static_cast<double>(request.samples));
@@ -309,12 +374,12 @@ bool Tracer::render(const Request& request, Picture& picture) const {
       complete = false;
       return;
     }
-    SeenTriangles seen;
+    Scratch scratch;
     const int left = part.x + number % across * tile, top = part.y + number / across * tile;
     for (int y = top; y < std::min(top + tile, part.y + part.height); ++y)
       for (int x = left; x < std::min(left + tile, part.x + part.width); ++x) {
         glm::vec4& target = picture.at(request.rect.x + x, request.rect.y + y);
-        target = impl_->pixel(request, camera, shading, seen, x, y, target, picture.height);
+        target = impl_->pixel(request, camera, shading, scratch, x, y, target, picture.height);
       }
     const std::lock_guard lock(reporting);
     ++done;

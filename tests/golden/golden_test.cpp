@@ -56,7 +56,7 @@ std::vector<Case> cases() {
   all.push_back({"camera-texture", shaped(texture), 320, 240, true, 24.0});
   texture.deformations = {{"rings", {model::Ripple{0.12, 0.5}, 0.2, -0.1, 0.8, 0}}};
   texture.columns = texture.rows = 40;
-  Case folded{"camera-texture-folded", shaped(texture), 320, 240, false, 24.0};
+  Case folded{"camera-texture-folded", shaped(texture), 320, 240, true, 24.0};
   folded.projection.zoom = 1.2;
   folded.projection.off_axis = {0.2, 0.1, -0.2};
   folded.projection.orientation = {{15.0}, {5.0}, {-8.0}};
@@ -116,6 +116,23 @@ TEST_CASE("every projection by every method looks as it did") {
   }
 }
 
+TEST_CASE("a fold looked up in a cubemap drawn in one pass looks as in six") {
+  for (const Case& it : cases()) {
+    if (it.name != "camera-texture-folded") continue;
+    for (const int samples : {1, 4}) {
+      CAPTURE(samples);
+      model::Show show = show_of(it, model::Method::cubemap);
+      show.quality.samples = samples;
+      const Shot six = draw(show);
+      show.quality.cubemap_single_pass = true;
+      CHECK(psnr(six, draw(show)) > 50.0);
+      show.quality.cubemap_single_pass = false;
+      show.projections.begin()->second.zoom *= 1.5;
+      CHECK(psnr(six, draw(show)) < 30.0);
+    }
+  }
+}
+
 TEST_CASE("both engines draw the same pieces") {
   for (const Case& it : cases()) {
     if (!it.piecewise || it.name == "perspective") continue;
@@ -127,12 +144,12 @@ TEST_CASE("both engines draw the same pieces") {
     show.pieces.engine = model::Engine::gpu;
     for (int i = 0; i < 2; ++i) CHECK(psnr(cpu, draw(show)) > 50.0);
     // The GPU's counts are read back a frame late. It takes strips by azimuth alone; the CPU also leaves out
-    // what is above or below the picture.
+    // what is above or below the picture, and what nearer triangles cover.
     static_cast<void>(draw(show));
     const auto gpu_pairs = last_statistics().replicated;
     MESSAGE(it.name << ": pairs of the CPU " << cpu_pairs << ", of the GPU " << gpu_pairs);
     CHECK(gpu_pairs >= cpu_pairs);
-    CHECK(gpu_pairs < cpu_pairs * 2);
+    CHECK(gpu_pairs < cpu_pairs * 3);
   }
 }
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -172,6 +174,42 @@ TEST_CASE("any grid: bins find what a search over all triangles finds") {
     }
     CHECK(shown > 1000);
   }
+}
+
+TEST_CASE("a fold: every triangle that covers a point is found, and its own ray lands there") {
+  std::mt19937 random(5);
+  model::CameraTexture texture = grid_of(13, 7);
+  std::uniform_real_distribution<double> offset(-0.4, 0.4);
+  texture.offsets.assign(8, std::vector<glm::dvec2>(14));
+  for (auto& row : texture.offsets)
+    for (glm::dvec2& pair : row) pair = {offset(random), offset(random)};
+  const Map map = make_map(projection_of(texture), aspect);
+  CHECK(folds(map));
+  CHECK_FALSE(folds(make_map(projection_of(grid_of(13, 7)), aspect)));
+  std::size_t several = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const glm::dvec2 st = random_point(random);
+    std::vector<std::uint32_t> wanted;
+    for (std::uint32_t triangle = 0; triangle < grid(map).triangle_count(); ++triangle) {
+      const auto corners = grid(map).triangle(triangle);
+      std::array<double, 3> sides{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec2 a = grid(map).landing(corners[k]), b = grid(map).landing(corners[(k + 1) % 3]);
+        sides[k] = (b.x - a.x) * (st.y - a.y) - (b.y - a.y) * (st.x - a.x);
+      }
+      const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
+      if (least >= 0.0 || most <= 0.0) wanted.push_back(triangle);
+    }
+    CHECK(covering(map, st) == wanted);
+    several += wanted.size() > 1 ? 1 : 0;
+    if (!wanted.empty()) CHECK(*ray_by(map, wanted.front(), st) == *ray(map, st));
+    for (const std::uint32_t triangle : wanted) {
+      const auto own = ray_by(map, triangle, st);
+      REQUIRE(own);
+      CHECK(glm::length(*image_point(map, *own) - st) < 1e-9);
+    }
+  }
+  CHECK(several > 300);
 }
 
 TEST_CASE("grids that lie on one line or one point show nothing, and the largest are built") {
