@@ -6,8 +6,8 @@ in vec2 v_st;
 layout(binding = 0) uniform samplerCube cubemap; // view axes
 
 #ifdef CUPOLA_BY_DEPTH
-// The picture folds: of the places that land on a pixel the nearest is seen, by its distance in lengths of its
-// own ray, as with pieces.
+// The picture folds: of the places that land on a pixel the nearest is seen, by its distance in lengths of
+// its own ray, as with pieces.
 layout(binding = 1) uniform samplerCube cubemap_depth; // near / distance along the face's axis
 #endif
 
