@@ -169,11 +169,7 @@ private:
 
   void add_pieces(const std::string& pointer, ViewportPlan& viewport) {
     const double wanted = show_.pieces.max_error;
-    viewport.pieces = make_strips(viewport.map, viewport.rect, wanted);
-    if (std::holds_alternative<projection::CameraTextureMap>(viewport.map.shape))
-      viewport.pieces = make_camera_texture_pieces(viewport.map, viewport.rect);
-    else if (!viewport.pieces)
-      viewport.pieces = make_cells(viewport.map, viewport.rect, wanted);
+    viewport.pieces = make_pieces(viewport.map, viewport.rect, wanted);
     if (viewport.method == model::Method::automatic) {
       // The cubemap is there for what pieces cannot do.
       if (viewport.pieces && (too_many(*viewport.pieces) || viewport.pieces->pieces.empty()))
@@ -277,6 +273,13 @@ private:
 };
 
 } // namespace
+
+std::optional<PieceSet> make_pieces(const projection::Map& map, const PixelRect& rect, double max_error) {
+  if (std::holds_alternative<projection::CameraTextureMap>(map.shape))
+    return make_camera_texture_pieces(map, rect);
+  if (auto strips = make_strips(map, rect, max_error)) return strips;
+  return make_cells(map, rect, max_error);
+}
 
 model::Result<Planned> make_plan(const model::Show& show) { return Planner(show).run(); }
 

@@ -132,6 +132,10 @@ struct Planned {
 /// Precondition: the show has passed the loader's checks.
 [[nodiscard]] model::Result<Planned> make_plan(const model::Show& show);
 
+/// The pieces of a projection, by whichever of the following is made for it.
+[[nodiscard]] std::optional<PieceSet> make_pieces(const projection::Map& map, const PixelRect& rect,
+                                                  double max_error);
+
 /// The strips of a cylinder [Lorenz & Döllner, sec. 3.1], as few as keep within `max_error` pixels of `rect`,
 /// or of one pixel's width where that is not enough (then PieceSet::max_error exceeds it); also of a
 /// perspective, which is one piece. Borders stand on whole pixels; at half a turn, where zoom shows more than

@@ -14,11 +14,21 @@
 
 namespace cupola::tests {
 
+/// Planes through the eye around what a piece shows, not negative inside: a strip ends above and below as
+/// well.
+inline std::vector<glm::dvec3> planes_of(const plan::Piece& piece) {
+  std::vector<glm::dvec3> planes(piece.planes.begin(), piece.planes.begin() + piece.plane_count);
+  if (piece.plane_count == 3) return planes;
+  const glm::dmat3 rows = glm::transpose(piece.to_screen);
+  planes.insert(planes.end(), {rows[2], rows[2] - rows[1], rows[2] + rows[1]});
+  return planes;
+}
+
 /// Whether a part of the triangle, which is in view axes, lies within the piece's pyramid. Slivers of less
 /// than a billionth of the triangle do not count: Sutherland–Hodgman in double.
 inline bool meets(const plan::Piece& piece, const std::array<glm::dvec3, 3>& triangle) {
   std::vector<glm::dvec3> polygon(triangle.begin(), triangle.end()), cut;
-  for (const glm::dvec3& plane : piece.planes) {
+  for (const glm::dvec3& plane : planes_of(piece)) {
     cut.clear();
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const glm::dvec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];

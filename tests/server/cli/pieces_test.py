@@ -84,6 +84,7 @@ class Pieces(CupolaTest):
             self.assertGreater(viewport["largest_error"], 0.01)
             self.assertLessEqual(viewport["largest_error"], 0.25)
             self.assertEqual((viewport["looked_up"], viewport["step"]), (0, 1))
+            self.assertGreater(viewport["milliseconds"], 0)
             for side in ("width", "height"):
                 size = viewport[side]
                 self.assertLessEqual(size["smallest"], size["mean"])
