@@ -7,6 +7,7 @@
 
 #include "renderer/content/clusters.h"
 #include "renderer/content/gltf_document.h"
+#include "renderer/content/gltf_instances.h"
 #include "renderer/content/gltf_materials.h"
 #include "renderer/content/gltf_meshes.h"
 #include "renderer/content/gltf_nodes.h"
@@ -42,9 +43,11 @@ public:
                                      m.normal_map.texture >= 0 || m.metallic_roughness_map.texture >= 0 ||
                                      m.occlusion_map.texture >= 0});
     }
-    for (const std::size_t node : rig_.order)
-      if (shown[node]) collect(node);
-    collect_lights(shown);
+    const std::vector<std::size_t> order = rig_.order; // the document's own nodes
+    const auto instances = gltf::read_instances(document_, rig_, report_);
+    for (const std::size_t node : order)
+      if (shown[node]) collect(node, instances[node]);
+    collect_lights(order, shown);
     if (report_.failed()) return;
     if (placed_.empty()) report_.warning("/scenes", "a mesh in the scene", "none", "Nothing is shown.");
     fill(scene);
@@ -67,7 +70,7 @@ private:
     return meshes_[mesh] = read ? std::move(*read) : std::vector<gltf::Primitive>{};
   }
 
-  void collect(std::size_t node) {
+  void collect(std::size_t node, const std::vector<std::size_t>& instances) {
     const tinygltf::Node& from = document_.model.nodes[node];
     if (from.mesh < 0 || report_.failed()) return;
     for (const gltf::Primitive& primitive : primitives(static_cast<std::size_t>(from.mesh))) {
@@ -84,16 +87,26 @@ private:
         report_.warning(path("nodes", node, "/skin"), "a mesh with joints and weights", "one without",
                         "It does not bend.");
       }
-      if (!budget_.take(primitive.mesh->placed_vertices(), primitive.triangles.size() / 3, 0,
-                        path("nodes", node), report_))
-        return;
-      placed_.push_back({std::move(part), &primitive, false, primitive.material});
+      if (instances.empty() && !place(part, primitive, node)) return;
+      for (const std::size_t instance : instances) {
+        part.node = instance;
+        if (!place(part, primitive, node)) return;
+      }
     }
   }
 
-  void collect_lights(const std::vector<bool>& shown) {
+  /// False, with a problem of `node`, where there is no room for it.
+  bool place(const RigPart& part, const gltf::Primitive& primitive, std::size_t node) {
+    if (!budget_.take(primitive.mesh->placed_vertices(), primitive.triangles.size() / 3, 0,
+                      path("nodes", node), report_))
+      return false;
+    placed_.push_back({part, &primitive, false, primitive.material});
+    return true;
+  }
+
+  void collect_lights(const std::vector<std::size_t>& order, const std::vector<bool>& shown) {
     const std::vector<Light> lights = gltf::read_lights(document_, report_);
-    for (const std::size_t node : rig_.order) {
+    for (const std::size_t node : order) {
       const auto& extensions = document_.model.nodes[node].extensions;
       const auto found = extensions.find("KHR_lights_punctual");
       if (!shown[node] || found == extensions.end() || !found->second.Has("light")) continue;

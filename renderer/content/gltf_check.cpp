@@ -114,7 +114,9 @@ const Rules& accessor_rules() {
 
 const Rules& node_rules() {
   static const Rules light{{"light", Kind::index, true, "extensions/KHR_lights_punctual/lights"}};
-  static const Rules extensions{{"KHR_lights_punctual", Kind::object, false, nullptr, &light}};
+  static const Rules instancing{{"attributes", Kind::index_map, true, "accessors"}};
+  static const Rules extensions{{"KHR_lights_punctual", Kind::object, false, nullptr, &light},
+                                {"EXT_mesh_gpu_instancing", Kind::object, false, nullptr, &instancing}};
   static const Rules rules{{"name", Kind::text},
                            {"children", Kind::indices, false, "nodes"},
                            {"mesh", Kind::index, false, "meshes"},

@@ -13,9 +13,9 @@ namespace {
 
 using model::Code;
 
-constexpr std::array<std::string_view, 5> known_extensions{
-    "KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_unlit", "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::array<std::string_view, 6> known_extensions{
+    "EXT_mesh_gpu_instancing", "KHR_lights_punctual",   "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",     "KHR_mesh_quantization", "KHR_texture_transform"};
 
 void check_extensions(const tinygltf::Model& model, Report& report) {
   const auto known = [](const std::string& name) {
