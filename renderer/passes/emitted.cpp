@@ -6,7 +6,9 @@
 namespace cupola::passes {
 
 std::size_t depth_shell(float depth, float per_octave) {
-  return std::min(static_cast<std::size_t>(per_octave * std::log2(std::max(depth, 1.0f))), depth_shells - 1);
+  if (!(depth > 1.0f)) return 0;
+  const float shell = std::min(per_octave * std::log2(depth), static_cast<float>(depth_shells - 1));
+  return static_cast<std::size_t>(shell);
 }
 
 std::uint32_t pack_normal(const glm::vec3& normal) {

@@ -120,6 +120,20 @@ TEST_CASE("back faces of single-sided materials are left out") {
   CHECK(distribute(soup, 180.0, false).batches[0].pairs == 0);
 }
 
+TEST_CASE("shells of depth: any number has one, and farther ones are not before nearer ones") {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  CHECK(passes::depth_shell(std::numeric_limits<float>::quiet_NaN(), 2.0f) == 0);
+  CHECK(passes::depth_shell(-infinity, 2.0f) == 0);
+  CHECK(passes::depth_shell(1.0f, 2.0f) == 0);
+  CHECK(passes::depth_shell(2.1f, 2.0f) == 2);
+  CHECK(passes::depth_shell(infinity, 2.0f) == passes::depth_shells - 1);
+  std::size_t last = 0;
+  for (float depth = 0.01f; depth < 1e9f; depth *= 1.1f) {
+    CHECK(passes::depth_shell(depth, 1.0f) >= last);
+    last = passes::depth_shell(depth, 1.0f);
+  }
+}
+
 TEST_CASE("portions hold whole triangles of one material: opaque ones by depth, blended ones as they stand") {
   Soup soup = tests::random_soup(9, 60, 0.7f);
   soup.materials.push_back(soup.materials.front());
