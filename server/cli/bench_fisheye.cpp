@@ -8,7 +8,6 @@
 
 #include "server/cli/bench.h"
 #include "server/cli/bench_show.h"
-#include "server/cli/commands.h"
 #include "server/cli/offline.h"
 
 namespace cupola::cli {
@@ -45,8 +44,9 @@ const std::array ways{Way{"IB, cubemap 0.79 of matched", model::Method::cubemap,
 
 class FisheyeBench {
 public:
-  FisheyeBench(frame::Renderer& renderer, bool as_json, bool quick)
+  FisheyeBench(frame::Renderer& renderer, BenchReport& report, bool as_json, bool quick)
       : renderer_(renderer)
+      , report_(report)
       , as_json_(as_json)
       , quick_(quick) {}
 
@@ -63,16 +63,14 @@ public:
       const double pieces = best[model::Method::piecewise], cubemap = best[model::Method::cubemap];
       const std::string label = std::to_string(triangles / 1000) + "k";
       const std::string key = size == 2048 ? label : label + "_" + std::to_string(size);
-      report.ratios["ppp_over_ib_" + key] = rounded(cubemap / pieces, 0.001);
+      report_.ratios["ppp_over_ib_" + key] = rounded(cubemap / pieces, 0.001);
       const double automatic = std::min(pieces, cubemap) / best[model::Method::automatic];
-      report.ratios["auto_over_best_" + key] = rounded(automatic, 0.001);
+      report_.ratios["auto_over_best_" + key] = rounded(automatic, 0.001);
       worst_auto_ = std::min(worst_auto_, automatic);
     }
-    report.ratios["auto_over_best"] = rounded(worst_auto_, 0.001);
+    report_.ratios["auto_over_best"] = rounded(worst_auto_, 0.001);
     return true;
   }
-
-  BenchReport report;
 
 private:
   std::optional<Timing> measure(const Way& way, int size, int triangles) {
@@ -92,7 +90,7 @@ private:
     if (!timed) return std::nullopt;
     const auto& [timing, stage] = *timed;
     const plan::ViewportPlan& viewport = stage->plan->outputs.front().viewports.front();
-    report.rows.push_back(
+    report_.rows.push_back(
         {{"triangles", triangles},
          {"size", size},
          {"method", way.name},
@@ -106,6 +104,7 @@ private:
   }
 
   frame::Renderer& renderer_;
+  BenchReport& report_;
   bool as_json_, quick_;
   std::shared_ptr<const content::Scene> scene_;
   double worst_auto_ = 10.0;
@@ -116,21 +115,14 @@ private:
 int bench_fisheye(bool as_json, bool quick) {
   frame::RendererOptions options;
   options.measure_methods = true;
-  auto offline = make_offline_renderer(options);
-  if (!offline) {
-    print_problems(offline.error());
-    return exit_unusable;
-  }
-  FisheyeBench bench(*offline->renderer, as_json, quick);
-  bench.report.device = device_line(*offline->renderer);
-  for (const int triangles : {35'000, 350'000, 3'500'000})
-    if (!bench.city(triangles)) return exit_no;
-  bench.report.notes = {
-      "Fisheye of 180°, city; cubemap faces are cropped to what the fisheye sees. Ratios are at "
-      "2048² unless a size is named, with the matched cubemap.",
-      "auto_over_best: the worst of all rows."};
-  print_report(bench.report, as_json);
-  return exit_done;
+  return run_bench(as_json, options, [&](frame::Renderer& renderer, BenchReport& report) {
+    report.notes = {
+        "Fisheye of 180°, city; cubemap faces are cropped to what the fisheye sees. Ratios are at "
+        "2048² unless a size is named, with the matched cubemap.",
+        "auto_over_best: the worst of all rows."};
+    FisheyeBench bench(renderer, report, as_json, quick);
+    return bench.city(35'000) && bench.city(350'000) && bench.city(3'500'000);
+  });
 }
 
 } // namespace cupola::cli

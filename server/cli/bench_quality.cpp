@@ -13,8 +13,8 @@
 
 #include "renderer/reference/compare.h"
 #include "server/cli/bench.h"
+#include "server/cli/bench_show.h"
 #include "server/cli/bench_timing.h"
-#include "server/cli/commands.h"
 #include "server/cli/offline.h"
 #include "server/cli/quality_case.h"
 
@@ -103,9 +103,10 @@ outputs::ByteImage close_up(const std::vector<const outputs::ByteImage*>& pictur
 
 class QualityBench {
 public:
-  QualityBench(frame::Renderer& renderer, const QualityOptions& options)
+  QualityBench(frame::Renderer& renderer, const QualityOptions& options, BenchReport& report)
       : renderer_(renderer)
       , options_(options)
+      , report_(report)
       , poses_(options.quick ? 2 : 10)
       , samples_(options.quick ? 4 : reference::default_samples) {}
 
@@ -124,17 +125,15 @@ public:
         !subject("city", "fisheye", city, textured, streets))
       return false;
     if (options_.subject.empty())
-      report.ratios = {{"cylinder_matched_db", lead("city", "cylinder", "matched")},
-                       {"cylinder_equal_time_db", lead("city", "cylinder", "equal time")},
-                       {"fisheye_equal_time_db", lead("city", "fisheye", "equal time")},
-                       {"lineart_best_db", std::min(lead("wireframe", "cylinder", "best"),
-                                                    lead("hatching", "cylinder", "best"))},
-                       {"minus_plain_db", rounded(leads_.at("minus_plain_db"), 0.001)}};
-    for (const auto& [name, value] : leads_) report.ratios[name] = rounded(value, 0.001);
+      report_.ratios = {{"cylinder_matched_db", lead("city", "cylinder", "matched")},
+                        {"cylinder_equal_time_db", lead("city", "cylinder", "equal time")},
+                        {"fisheye_equal_time_db", lead("city", "fisheye", "equal time")},
+                        {"lineart_best_db", std::min(lead("wireframe", "cylinder", "best"),
+                                                     lead("hatching", "cylinder", "best"))},
+                        {"minus_plain_db", rounded(leads_.at("minus_plain_db"), 0.001)}};
+    for (const auto& [name, value] : leads_) report_.ratios[name] = rounded(value, 0.001);
     return true;
   }
-
-  BenchReport report;
 
 private:
   static std::string key(const std::string& subject, const std::string& view, const std::string& rule) {
@@ -177,21 +176,21 @@ private:
     const auto or_null = [](double value, double step) {
       return value > 0.0 ? nlohmann::ordered_json(rounded(value, step)) : nullptr;
     };
-    report.rows.push_back({{"view", view},
-                           {"subject", subject},
-                           {"rule", rule},
-                           {"method", piecewise ? "pieces" : "cubemap"},
-                           {"cubemap", piecewise ? nullptr
-                                                 : nlohmann::ordered_json(std::lround(setting.cubemap_scale *
-                                                                                      here.matched_size()))},
-                           {"mipmaps", setting.mipmaps},
-                           {"drawn", setting.supersampling},
-                           {"samples", setting.samples},
-                           {"anisotropy", setting.anisotropy},
-                           {"ms", or_null(figures.milliseconds, 0.01)},
-                           {"psnr", rounded(figures.psnr_db, 0.01)},
-                           {"ssim", or_null(figures.ssim, 0.0001)},
-                           {"sharpness", or_null(figures.sharpness, 0.001)}});
+    report_.rows.push_back({{"view", view},
+                            {"subject", subject},
+                            {"rule", rule},
+                            {"method", piecewise ? "pieces" : "cubemap"},
+                            {"cubemap", piecewise ? nullptr
+                                                  : nlohmann::ordered_json(std::lround(setting.cubemap_scale *
+                                                                                       here.matched_size()))},
+                            {"mipmaps", setting.mipmaps},
+                            {"drawn", setting.supersampling},
+                            {"samples", setting.samples},
+                            {"anisotropy", setting.anisotropy},
+                            {"ms", or_null(figures.milliseconds, 0.01)},
+                            {"psnr", rounded(figures.psnr_db, 0.01)},
+                            {"ssim", or_null(figures.ssim, 0.0001)},
+                            {"sharpness", or_null(figures.sharpness, 0.001)}});
   }
 
   bool matched_and_best(const std::string& name, const std::string& view, QualityCase& here) {
@@ -337,6 +336,7 @@ private:
 
   frame::Renderer& renderer_;
   const QualityOptions& options_;
+  BenchReport& report_;
   int poses_, samples_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   std::map<std::string, double> leads_; ///< dB by which pieces are ahead
@@ -362,17 +362,10 @@ std::vector<std::string> notes() {
 } // namespace
 
 int bench_quality(const QualityOptions& options) {
-  auto offline = make_offline_renderer();
-  if (!offline) {
-    print_problems(offline.error());
-    return exit_unusable;
-  }
-  QualityBench bench(*offline->renderer, options);
-  bench.report.device = device_line(*offline->renderer);
-  if (!bench.run()) return exit_no;
-  bench.report.notes = notes();
-  print_report(bench.report, options.json);
-  return exit_done;
+  return run_bench(options.json, {}, [&](frame::Renderer& renderer, BenchReport& report) {
+    report.notes = notes();
+    return QualityBench(renderer, options, report).run();
+  });
 }
 
 } // namespace cupola::cli

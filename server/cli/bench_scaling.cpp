@@ -12,7 +12,6 @@
 
 #include "server/cli/bench.h"
 #include "server/cli/bench_show.h"
-#include "server/cli/commands.h"
 #include "server/cli/offline.h"
 #include "server/cli/plot.h"
 
@@ -107,9 +106,10 @@ double last_exponent(const std::vector<glm::dvec2>& points) {
 
 class ScalingBench {
 public:
-  ScalingBench(frame::Renderer& renderer, const ScalingOptions& options)
+  ScalingBench(frame::Renderer& renderer, const ScalingOptions& options, BenchReport& report)
       : renderer_(renderer)
-      , options_(options) {}
+      , options_(options)
+      , report_(report) {}
 
   /// False when something could not be drawn; the problems have been printed.
   bool run() {
@@ -123,8 +123,6 @@ public:
     }
     return options_.plot.empty() || write_plot();
   }
-
-  BenchReport report;
 
 private:
   bool grow(const Series& series, const View& view, Method method) {
@@ -150,20 +148,20 @@ private:
       const std::map<std::string, double> counts{
           {"triangles", triangles}, {"pieces", pieces}, {"pixels", pixels}, {"outputs", outputs}};
       curve.points.emplace_back(counts.at(series.name), timed->timing.milliseconds);
-      report.rows.push_back({{"grows", series.name},
-                             {"view", view.name},
-                             {"method", piecewise ? "pieces" : "cubemap"},
-                             {"triangles", std::llround(triangles)},
-                             {"pieces", piecewise ? nlohmann::ordered_json(std::llround(pieces)) : nullptr},
-                             {"pixels", std::llround(pixels)},
-                             {"outputs", std::llround(outputs)},
-                             {"sent", std::llround(timed->timing.triangles)},
-                             {"ms", rounded(timed->timing.milliseconds, 0.01)}});
+      report_.rows.push_back({{"grows", series.name},
+                              {"view", view.name},
+                              {"method", piecewise ? "pieces" : "cubemap"},
+                              {"triangles", std::llround(triangles)},
+                              {"pieces", piecewise ? nlohmann::ordered_json(std::llround(pieces)) : nullptr},
+                              {"pixels", std::llround(pixels)},
+                              {"outputs", std::llround(outputs)},
+                              {"sent", std::llround(timed->timing.triangles)},
+                              {"ms", rounded(timed->timing.milliseconds, 0.01)}});
     }
     const std::string key = std::string(series.name) + '_' + view.name + (piecewise ? "_pieces" : "_cubemap");
     const double fitted = fitted_exponent(curve.points), last = last_exponent(curve.points);
-    report.ratios[key] = rounded(fitted, 0.001);
-    report.ratios[key + "_last"] = rounded(last, 0.001);
+    report_.ratios[key] = rounded(fitted, 0.001);
+    report_.ratios[key + "_last"] = rounded(last, 0.001);
     panels_.back().curves.push_back(std::move(curve));
     return true;
   }
@@ -176,28 +174,22 @@ private:
 
   frame::Renderer& renderer_;
   const ScalingOptions& options_;
+  BenchReport& report_;
   std::vector<Panel> panels_;
 };
 
 } // namespace
 
 int bench_scaling(const ScalingOptions& options) {
-  auto offline = make_offline_renderer();
-  if (!offline) {
-    print_problems(offline.error());
-    return exit_unusable;
-  }
-  ScalingBench bench(*offline->renderer, options);
-  bench.report.device = device_line(*offline->renderer);
-  if (!bench.run()) return exit_no;
-  bench.report.notes = {
-      "Exponents k of time = c · count^k: fitted to all rows of a series, and between its last two (_last). "
-      "1 "
-      "is linear.",
-      "City of 35,000 triangles, fisheye 180° of 1024² and cylinder 360° of 1448 × 724, max_error 0.25, one "
-      "output, unless they are what grows; cubemaps of matched density."};
-  print_report(bench.report, options.json);
-  return exit_done;
+  return run_bench(options.json, {}, [&](frame::Renderer& renderer, BenchReport& report) {
+    report.notes = {"Exponents k of time = c · count^k: fitted to all rows of a series, and between its last "
+                    "two (_last). 1 "
+                    "is linear.",
+                    "City of 35,000 triangles, fisheye 180° of 1024² and cylinder 360° of 1448 × 724, "
+                    "max_error 0.25, one "
+                    "output, unless they are what grows; cubemaps of matched density."};
+    return ScalingBench(renderer, options, report).run();
+  });
 }
 
 } // namespace cupola::cli

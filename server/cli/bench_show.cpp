@@ -8,6 +8,20 @@
 
 namespace cupola::cli {
 
+int run_bench(bool as_json, const frame::RendererOptions& options,
+              const std::function<bool(frame::Renderer&, BenchReport&)>& body) {
+  auto offline = make_offline_renderer(options);
+  if (!offline) {
+    print_problems(offline.error());
+    return exit_unusable;
+  }
+  BenchReport report;
+  report.device = device_line(*offline->renderer);
+  if (!body(*offline->renderer, report)) return exit_no;
+  print_report(report, as_json);
+  return exit_done;
+}
+
 std::vector<model::Keyframe> round_the_city(int places) {
   std::vector<model::Keyframe> path;
   for (int i = 0; i <= places; ++i) {

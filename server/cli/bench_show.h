@@ -1,6 +1,7 @@
 // Shows that benchmarks draw, and the drawing of one. Render thread.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "configs/model/show.h"
 #include "renderer/frame/renderer.h"
+#include "server/cli/bench.h"
 #include "server/cli/bench_timing.h"
 
 namespace cupola::cli {
@@ -22,6 +24,11 @@ namespace cupola::cli {
 
 /// The viewport "all" of the output "main".
 [[nodiscard]] model::Viewport& viewport_of(model::Show& show);
+
+/// Opens a headless renderer, lets `body` fill the report, and prints it. `body` answers false where
+/// something could not be drawn and has been told. Returns an exit code.
+[[nodiscard]] int run_bench(bool as_json, const frame::RendererOptions& options,
+                            const std::function<bool(frame::Renderer&, BenchReport&)>& body);
 
 struct Frames {
   double duration = 1.0;      ///< seconds of the show over which the poses are spread

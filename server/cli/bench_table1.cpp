@@ -3,8 +3,6 @@
 
 #include "server/cli/bench.h"
 #include "server/cli/bench_show.h"
-#include "server/cli/commands.h"
-#include "server/cli/offline.h"
 
 namespace cupola::cli {
 
@@ -37,17 +35,7 @@ constexpr Row rows[] = {
     {"PPP HQ", "view", model::Method::piecewise, true, 54.8, 1.96},
 };
 
-} // namespace
-
-int bench_table1(bool as_json, bool quick) {
-  auto offline = make_offline_renderer();
-  if (!offline) {
-    print_problems(offline.error());
-    return exit_unusable;
-  }
-  frame::Renderer& renderer = *offline->renderer;
-  BenchReport report;
-  report.device = device_line(renderer);
+bool measure_table1(frame::Renderer& renderer, BenchReport& report, bool as_json, bool quick) {
   model::Show show = paper_show();
   std::shared_ptr<const content::Scene> scene;
   std::vector<double> milliseconds;
@@ -63,7 +51,7 @@ int bench_table1(bool as_json, bool quick) {
     const int poses = quick ? 2 : (slow ? 3 : 12), repeats = quick || slow ? 1 : 5;
     if (!as_json) std::fprintf(stderr, "%s: %d poses × %d frames\n", row.name, poses, repeats);
     const auto timed = time_show(renderer, show, scene, {double{places}, poses, repeats});
-    if (!timed) return exit_no;
+    if (!timed) return false;
     const Timing& measured = timed->timing;
     milliseconds.push_back(measured.milliseconds);
     const bool piecewise = row.method == model::Method::piecewise && std::string(row.projection) == "view";
@@ -90,8 +78,15 @@ int bench_table1(bool as_json, bool quick) {
                       std::to_string(renderer.device().max_anisotropy) + ", " +
                       std::to_string(renderer.device().max_samples) + " samples.",
                   "The paper's GeForce 8800 GTS: PPP over IB 2.03, in high quality 1.62."};
-  print_report(report, as_json);
-  return exit_done;
+  return true;
+}
+
+} // namespace
+
+int bench_table1(bool as_json, bool quick) {
+  return run_bench(as_json, {}, [&](frame::Renderer& renderer, BenchReport& report) {
+    return measure_table1(renderer, report, as_json, quick);
+  });
 }
 
 } // namespace cupola::cli

@@ -7,8 +7,6 @@
 
 #include "server/cli/bench.h"
 #include "server/cli/bench_show.h"
-#include "server/cli/commands.h"
-#include "server/cli/offline.h"
 
 namespace cupola::cli {
 
@@ -60,17 +58,7 @@ nlohmann::ordered_json row_of(const Row& row, const Timing& timing, const plan::
           {"paper replication", known(row.paper_replication)}};
 }
 
-} // namespace
-
-int bench_table2(bool as_json, bool quick) {
-  auto offline = make_offline_renderer();
-  if (!offline) {
-    print_problems(offline.error());
-    return exit_unusable;
-  }
-  frame::Renderer& renderer = *offline->renderer;
-  BenchReport report;
-  report.device = device_line(renderer);
+bool measure_table2(frame::Renderer& renderer, BenchReport& report, bool as_json, bool quick) {
   std::shared_ptr<const content::Scene> scene;
   std::map<std::string, Timing> timings;
   int picture = 0;
@@ -81,7 +69,7 @@ int bench_table2(bool as_json, bool quick) {
     viewport.method = row.method;
     if (!as_json) std::fprintf(stderr, "%s\n", row.name);
     const auto timed = time_show(renderer, show, scene, {double{poses}, quick ? 2 : poses, quick ? 2 : 7});
-    if (!timed) return exit_no;
+    if (!timed) return false;
     const auto& [timing, stage] = *timed;
     timings[row.name] = timing;
     if (stage->plan->cubemap) picture = stage->plan->cubemap->size;
@@ -99,8 +87,15 @@ int bench_table2(bool as_json, bool quick) {
       "part of one cubemap face of " +
           std::to_string(picture) + " pixels, the matched size.",
       "The paper's GeForce 8800 GTS: PPP over IB 0.04; with 80x60, 0.11 of the IB above."};
-  print_report(report, as_json);
-  return exit_done;
+  return true;
+}
+
+} // namespace
+
+int bench_table2(bool as_json, bool quick) {
+  return run_bench(as_json, {}, [&](frame::Renderer& renderer, BenchReport& report) {
+    return measure_table2(renderer, report, as_json, quick);
+  });
 }
 
 } // namespace cupola::cli
