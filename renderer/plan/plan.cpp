@@ -196,7 +196,7 @@ private:
     if (const double share = looked_up_share(set); share > noted_share)
       report(Code::looked_up, pointer + "/method",
              "a projection that perspectives follow everywhere, for all of it to be drawn piecewise",
-             fmt::format("{:.2g} % of the pixels looked up in a cubemap", 100.0 * share),
+             fmt::format("{:.3g} % of the pixels looked up in a cubemap", 100.0 * share),
              "Show less of the surroundings of a pole or rim, or use the method 'cubemap'.",
              Severity::warning);
     if (set.pieces.empty()) {
