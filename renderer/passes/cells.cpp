@@ -299,12 +299,40 @@ private:
            in_piece.z * corners[piece.corners[2]].landing;
   }
 
+  /// Where an edge of the scene crosses a border lands at the same place to the last bit, whichever of the
+  /// two triangles at the edge and of the two pieces at the border asks: else a sample could fall between
+  /// them.
+  [[nodiscard]] glm::vec3 crossing(const Triangle& t, const Point& point,
+                                   const PieceTable::Piece& piece) const {
+    const std::size_t edge = first_edge(point);
+    glm::vec3 p = t.view[(edge + 1) % 3], q = t.view[(edge + 2) % 3];
+    if (std::array{q.x, q.y, q.z} < std::array{p.x, p.y, p.z}) std::swap(p, q);
+    const auto border = static_cast<std::size_t>(point.border);
+    const glm::vec3& normal = piece.borders[border];
+    const auto [first, second] =
+        std::minmax(piece.corners[(border + 1) % 3], piece.corners[(border + 2) % 3]);
+    const PieceTable::Corner& a = view_.pieces.corners()[first];
+    const PieceTable::Corner& b = view_.pieces.corners()[second];
+    const float from = glm::dot(normal, p), to = glm::dot(normal, q);
+    const float t_cross = from == to ? 0.0f : std::clamp(from / (from - to), 0.0f, 1.0f);
+    const glm::vec3 at = p + t_cross * (q - p);
+    const glm::vec3 beside_a = glm::cross(normal, a.ray), beside_b = glm::cross(normal, b.ray);
+    return glm::dot(beside_b, at) / glm::dot(beside_b, a.ray) * a.landing +
+           glm::dot(beside_a, at) / glm::dot(beside_a, b.ray) * b.landing;
+  }
+
+  static std::size_t first_edge(const Point& point) {
+    return point.edges & 1u ? 0 : (point.edges & 2u ? 1 : 2);
+  }
+
   void emit(const Triangle& t, const Polygon& polygon, std::uint32_t number, const PieceTable::Piece& piece) {
     std::array<glm::vec3, 6> h;
     float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f;
     for (int i = 0; i < polygon.count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      h[at] = landing(piece, polygon.points[at].in_piece);
+      const Point& point = polygon.points[at];
+      const bool crosses = point.border >= 0 && point.edges != 0;
+      h[at] = crosses ? crossing(t, point, piece) : landing(piece, point.in_piece);
       nearest = std::min(nearest, h[at].z);
       farthest = std::max(farthest, h[at].z);
     }
@@ -372,7 +400,7 @@ private:
       key = {t.index[own], number, ~1u, ~0u};
     } else if (point.edges != 0) {
       // On an edge of the scene and on a border: four parts meet here.
-      const std::size_t edge = point.edges & 1u ? 0 : (point.edges & 2u ? 1 : 2);
+      const std::size_t edge = first_edge(point);
       const std::uint32_t a = t.index[(edge + 1) % 3], b = t.index[(edge + 2) % 3];
       const auto border = static_cast<std::size_t>(point.border);
       const std::uint32_t c = piece.corners[(border + 1) % 3], d = piece.corners[(border + 2) % 3];

@@ -28,6 +28,16 @@ PieceTable::Cone cone(const plan::PieceSet& set, const std::array<std::uint32_t,
   return cone(axis, cosine);
 }
 
+/// By the corners of the border, whichever piece asks.
+std::array<glm::vec3, 3> borders_of(const plan::PieceSet& set, const std::array<std::uint32_t, 3>& triangle) {
+  std::array<glm::vec3, 3> out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto [a, b] = std::minmax(triangle[(i + 1) % 3], triangle[(i + 2) % 3]);
+    out[i] = glm::vec3(glm::normalize(glm::cross(set.corners[a].ray, set.corners[b].ray)));
+  }
+  return out;
+}
+
 } // namespace
 
 PieceTable::PieceTable(const plan::PieceSet& set) {
@@ -48,6 +58,7 @@ PieceTable::PieceTable(const plan::PieceSet& set) {
     cones_.push_back(cone(set, set.triangles[i]));
     pieces_.push_back({{glm::vec3(piece.planes[0]), glm::vec3(piece.planes[1]), glm::vec3(piece.planes[2])},
                        set.triangles[i],
+                       borders_of(set, set.triangles[i]),
                        glm::determinant(piece.to_screen) > 0.0,
                        no_group});
   }

@@ -30,6 +30,8 @@ public:
     /// Barycentric coordinates of a point of view space: dot(planes[i], v) for corner i.
     std::array<glm::vec3, 3> planes;
     std::array<std::uint32_t, 3> corners;
+    /// Normals of the borders opposite the corners: the same in both pieces that meet there, to the last bit.
+    std::array<glm::vec3, 3> borders;
     bool mirrored;                 ///< its picture is: winding on the screen is turned round
     std::uint32_t leaf = no_group; ///< the smallest group that holds it
   };

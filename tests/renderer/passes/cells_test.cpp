@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "tests/renderer/passes/exact_pairs.h"
@@ -248,6 +249,40 @@ TEST_CASE("vertices are shared between the parts that meet in them") {
   for (const passes::EmittedBatch& batch : result.batches) vertices += batch.vertices.size();
   CHECK(result.emitted > 100);
   CHECK(static_cast<double>(vertices) < 0.75 * static_cast<double>(result.emitted));
+}
+
+TEST_CASE("two triangles at an edge meet the pieces' borders at the same places, to the last bit") {
+  const plan::PieceSet set = fisheye(180.0);
+  std::mt19937 random(9);
+  std::normal_distribution<float> normal;
+  const auto draw = [&](float scale) {
+    const float x = normal(random), y = normal(random), z = normal(random);
+    return scale * glm::vec3(x, y, z);
+  };
+  constexpr std::uint32_t pairs = 1500;
+  std::vector<std::array<glm::vec3, 4>> corners;
+  for (std::uint32_t i = 0; i < pairs; ++i) {
+    const glm::vec3 middle = draw(4.0f);
+    corners.push_back({middle + draw(2.0f), middle + draw(2.0f), middle + draw(2.0f), middle + draw(2.0f)});
+  }
+  tests::Soup soup;
+  soup.materials[0].double_sided = true;
+  soup.materials[0].alpha_mode = content::AlphaMode::mask; // hides nothing
+  for (const auto& [a, b, c, d] : corners) soup.add(a, b, c);
+  for (const auto& [a, b, c, d] : corners) soup.add(d, c, b);
+  for (std::uint32_t i = 0; i < soup.vertices.size(); ++i) soup.vertices[i].color = i / 3; // tells them apart
+  // Points of the edge opposite the first corner, without its ends; by triangle.
+  std::vector<std::set<std::array<float, 3>>> places(2 * std::size_t{pairs});
+  for (const passes::EmittedBatch& batch : distribute(set, soup).batches)
+    for (const passes::EmittedVertex& v : batch.vertices)
+      if (v.corner.x == 0.0f && v.corner.y != 0.0f && v.corner.y != 1.0f)
+        places[v.color].insert({v.position.x, v.position.y, v.position.w});
+  std::size_t seen = 0;
+  for (std::uint32_t i = 0; i < pairs; ++i) {
+    CHECK(places[i] == places[pairs + i]);
+    seen += places[i].size();
+  }
+  CHECK(seen > 10'000);
 }
 
 TEST_CASE("a triangle through the eye, seen edge on, and one of no area yield nothing wrong") {
