@@ -119,9 +119,9 @@ void CameraGrid::visit_covering(glm::dvec2 st, const Visit& visit) const {
       static_cast<std::size_t>(row_of(st.y, bins_)) * static_cast<std::size_t>(bins_.columns) +
       static_cast<std::size_t>(column_of(st.x, bins_));
   for (std::uint32_t i = first_[bin]; i < first_[bin + 1]; ++i) {
-    if (twice_area(held_[i]) == 0.0) continue;
     const glm::dvec2 at = shares(held_[i], st);
-    if (!(at.x >= -border && at.y >= -border && at.x + at.y <= 1.0 + border)) continue;
+    const bool inside = at.x >= -border && at.y >= -border && at.x + at.y <= 1.0 + border;
+    if (!inside) continue; // nor where the triangle is flat: then they are infinite or none
     if (!visit(held_[i], at)) return;
   }
 }

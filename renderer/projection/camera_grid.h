@@ -52,10 +52,10 @@ private:
   [[nodiscard]] int column_of(double s, const Bins& bins) const;
   [[nodiscard]] int row_of(double t, const Bins& bins) const;
   void sort_into_bins();
-  /// Calls visit(triangle, place) for each triangle that covers the point, until it returns false.
+  /// Calls visit(triangle, shares) for each triangle that covers the point, until it returns false.
   template <class Visit>
   void visit_covering(glm::dvec2 st, const Visit& visit) const;
-  /// Barycentric coordinates of corners 1 and 2. Precondition: the triangle is not flat.
+  /// Barycentric coordinates of corners 1 and 2; not finite where the triangle is flat.
   [[nodiscard]] glm::dvec2 shares(std::uint32_t triangle, glm::dvec2 st) const;
   [[nodiscard]] glm::dvec2 place_of(std::uint32_t triangle, glm::dvec2 shares) const;
 

@@ -183,11 +183,9 @@ private:
 int bench_scaling(const ScalingOptions& options) {
   return run_bench(options.json, {}, [&](frame::Renderer& renderer, BenchReport& report) {
     report.notes = {"Exponents k of time = c · count^k: fitted to all rows of a series, and between its last "
-                    "two (_last). 1 "
-                    "is linear.",
+                    "two (_last). 1 is linear.",
                     "City of 35,000 triangles, fisheye 180° of 1024² and cylinder 360° of 1448 × 724, "
-                    "max_error 0.25, one "
-                    "output, unless they are what grows; cubemaps of matched density."};
+                    "max_error 0.25, one output, unless they are what grows; cubemaps of matched density."};
     return ScalingBench(renderer, options, report).run();
   });
 }
