@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <tiny_gltf.h>
@@ -44,6 +45,9 @@ struct Numbers {
   int components = 0;
   std::size_t count = 0;
   std::vector<float> values;
+  [[nodiscard]] glm::vec3 vec3(std::size_t i) const {
+    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  }
 };
 /// Reads an accessor that read_document() has checked; nothing after a problem (a number that is not finite).
 [[nodiscard]] std::optional<Numbers> read_numbers(const Document& document, int accessor, Report& report);

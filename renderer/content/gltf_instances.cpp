@@ -45,16 +45,12 @@ std::optional<std::size_t> read_attributes(const Document& document, const tinyg
   return count;
 }
 
-glm::vec3 vec3(const Numbers& from, std::size_t i) {
-  return {from.values[3 * i], from.values[3 * i + 1], from.values[3 * i + 2]};
-}
-
 RigNode instance_of(const std::array<Attribute, 3>& attributes, std::size_t i, const std::string& at,
                     Report& report) {
   const auto& [translation, rotation, scale] = attributes;
   RigNode made;
-  if (translation.numbers) made.translation = vec3(*translation.numbers, i);
-  if (scale.numbers) made.scale = vec3(*scale.numbers, i);
+  if (translation.numbers) made.translation = translation.numbers->vec3(i);
+  if (scale.numbers) made.scale = scale.numbers->vec3(i);
   if (!rotation.numbers) return made;
   const float* q = rotation.numbers->values.data() + 4 * i;
   const glm::quat turned(q[3], q[0], q[1], q[2]);

@@ -81,11 +81,11 @@ private:
 
   void fill(RigMesh& mesh, const MaterialNeed& need) {
     if (const auto position = attribute("POSITION", {3}))
-      for (std::size_t i = 0; i < count_; ++i) mesh.vertices[i].position = vec3(*position, i);
+      for (std::size_t i = 0; i < count_; ++i) mesh.vertices[i].position = position->vec3(i);
     for (Vertex& vertex : mesh.vertices) vertex.normal = {0.0f, 1.0f, 0.0f};
     if (const auto normal = attribute("NORMAL", {3})) {
       for (std::size_t i = 0; i < count_; ++i) {
-        const glm::vec3 n = vec3(*normal, i);
+        const glm::vec3 n = normal->vec3(i);
         if (glm::dot(n, n) > 0.0f) mesh.vertices[i].normal = glm::normalize(n);
       }
     }
@@ -164,7 +164,7 @@ private:
         const auto offsets = numbers(index, {3}, at);
         if (!offsets) continue;
         auto& list = name == "POSITION" ? made.positions : made.normals;
-        for (std::size_t i = 0; i < count_; ++i) list.push_back(vec3(*offsets, i));
+        for (std::size_t i = 0; i < count_; ++i) list.push_back(offsets->vec3(i));
       }
       mesh.targets.push_back(std::move(made));
     }
@@ -271,10 +271,6 @@ private:
     }
     for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
     mesh = std::move(apart);
-  }
-
-  static glm::vec3 vec3(const Numbers& from, std::size_t i) {
-    return {from.values[3 * i], from.values[3 * i + 1], from.values[3 * i + 2]};
   }
 
   const Document& document_;
