@@ -62,10 +62,7 @@ public:
       , entries_(scratch.entries)
       , number_(number)
       , out_(out) {
-    out_.vertices.clear();
-    out_.indices.clear();
-    out_.portions.clear();
-    out_.pairs = out_.hidden = 0;
+    out_.clear();
   }
 
   void run(const TaskItems& task) {
@@ -82,15 +79,9 @@ private:
   /// Indices of one material go to the batch: shell by shell, or, where the order counts, as they stand.
   void finish(std::uint32_t material, std::uint32_t run) {
     const auto materials = static_cast<std::uint32_t>(geometry_.materials.size());
-    for (std::uint32_t shell = 0; shell < depth_shells; ++shell) {
-      std::vector<std::uint32_t>& indices = scratch_.indices[shell];
-      if (indices.empty()) continue;
-      out_.portions.push_back({material, is_blended(material) ? run : shell * materials + material, 0,
-                               static_cast<std::uint32_t>(out_.indices.size()),
-                               static_cast<std::uint32_t>(indices.size())});
-      out_.indices.insert(out_.indices.end(), indices.begin(), indices.end());
-      indices.clear();
-    }
+    for (std::uint32_t shell = 0; shell < depth_shells; ++shell)
+      out_.take(scratch_.indices[shell], material, is_blended(material) ? run : shell * materials + material,
+                0);
   }
 
   [[nodiscard]] bool is_blended(std::uint32_t material) const {

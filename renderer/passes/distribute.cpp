@@ -40,10 +40,7 @@ public:
                 static_cast<std::size_t>(view.group_size))
       , indices_(depth_shells * groups_)
       , run_(first_run) {
-    out_.vertices.clear();
-    out_.indices.clear();
-    out_.portions.clear();
-    out_.pairs = out_.hidden = 0;
+    out_.clear();
   }
 
   void item(const DrawItem& item) {
@@ -65,16 +62,9 @@ public:
   /// The triangles of a run go to the batch, group by group.
   void finish() {
     const auto materials = static_cast<std::uint32_t>(geometry_.materials.size());
-    for (std::uint32_t i = 0; i < indices_.size(); ++i) {
-      std::vector<std::uint32_t>& indices = indices_[i];
-      if (indices.empty()) continue;
-      const std::uint32_t groups = static_cast<std::uint32_t>(groups_), shell = i / groups;
-      out_.portions.push_back({material_, blended_ ? run_ : shell * materials + material_, i % groups,
-                               static_cast<std::uint32_t>(out_.indices.size()),
-                               static_cast<std::uint32_t>(indices.size())});
-      out_.indices.insert(out_.indices.end(), indices.begin(), indices.end());
-      indices.clear();
-    }
+    const auto groups = static_cast<std::uint32_t>(groups_);
+    for (std::uint32_t i = 0; i < indices_.size(); ++i)
+      out_.take(indices_[i], material_, blended_ ? run_ : i / groups * materials + material_, i % groups);
   }
 
 private:

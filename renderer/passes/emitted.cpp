@@ -5,6 +5,22 @@
 
 namespace cupola::passes {
 
+void EmittedBatch::clear() {
+  vertices.clear();
+  indices.clear();
+  portions.clear();
+  pairs = hidden = 0;
+}
+
+void EmittedBatch::take(std::vector<std::uint32_t>& from, std::uint32_t material, std::uint32_t run,
+                        std::uint32_t group) {
+  if (from.empty()) return;
+  portions.push_back({material, run, group, static_cast<std::uint32_t>(indices.size()),
+                      static_cast<std::uint32_t>(from.size())});
+  indices.insert(indices.end(), from.begin(), from.end());
+  from.clear();
+}
+
 std::size_t depth_shell(float depth, float per_octave) {
   if (!(depth > 1.0f)) return 0;
   const float shell = std::min(per_octave * std::log2(depth), static_cast<float>(depth_shells - 1));

@@ -40,6 +40,10 @@ struct EmittedBatch {
   std::vector<EmittedPortion> portions;
   std::uint64_t pairs = 0;  ///< (triangle, piece), found
   std::uint64_t hidden = 0; ///< of them, left out behind an opaque triangle
+
+  void clear();
+  /// Moves indices of one material and group here as a portion; none where there are none.
+  void take(std::vector<std::uint32_t>& from, std::uint32_t material, std::uint32_t run, std::uint32_t group);
 };
 
 /// Geometry as it is this frame: moving vertices come from the pose, blended triangles stand in today's
