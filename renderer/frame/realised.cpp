@@ -89,7 +89,7 @@ void make_cubemap_target(Realised& made, const Realised* before) {
     for (const plan::ViewportPlan& viewport : output.viewports)
       if (plan::may_use_cubemap(viewport)) {
         matched = std::max(matched, plan::matched_cubemap_size(viewport.map, viewport.rect));
-        folds = folds || viewport.folds;
+        folds = folds || projection::folds(viewport.map);
       }
   made.cubemap_style_scale = static_cast<float>(size) / static_cast<float>(matched);
   const passes::CubemapMake make{size, samples, layered, quality.cubemap_mipmaps, folds};

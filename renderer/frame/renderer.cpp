@@ -368,19 +368,18 @@ passes::DrawCounts Renderer::Impl::draw_pieces(const std::string& key, const pla
     return counts;
   }
   const glm::vec3 background(current->stage->show->background);
-  if (!set.strips)
-    cells_of(key, set).area->prepare(fixed.area, viewport.map, background, current->cubemap.get());
+  Cells* own = set.strips ? nullptr : &cells_of(key, set);
+  if (own) own->area->prepare(fixed.area, viewport.map, background, current->cubemap.get());
   if (on_gpu()) {
-    if (!set.strips) cells_of(key, set).area->draw_background(fixed.area, background, nullptr);
+    if (own) own->area->draw_background(fixed.area, background, nullptr);
     return draw_on_gpu(key, viewport, scene, scale);
   }
   const auto ceiling = static_cast<std::uint64_t>(current->stage->show->pieces.max_replicated);
-  if (set.strips)
+  if (!own)
     return pass.draw_strips_cpu(scene, set, passes::StripAzimuths(set, viewport.map.orientation), ceiling,
                                 scale);
-  Cells& own = cells_of(key, set);
-  return pass.draw_cells_cpu(scene, *own.table, own.occlusion, ceiling, scale,
-                             [&] { own.area->draw_background(fixed.area, background, &own.occlusion); });
+  return pass.draw_cells_cpu(scene, *own->table, own->occlusion, ceiling, scale,
+                             [&] { own->area->draw_background(fixed.area, background, &own->occlusion); });
 }
 
 void Renderer::Impl::draw_reference(const std::string& key, const plan::ViewportPlan& viewport,

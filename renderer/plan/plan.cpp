@@ -137,7 +137,6 @@ private:
     if (!check_size(pointer, made.rect)) return std::nullopt;
     made.map = projection::make_map(named->second, double(made.rect.width) / made.rect.height);
     if (!projection::inside(made.map)) return std::nullopt; // reported with the projection
-    made.folds = projection::folds(made.map);
     check_folds(viewport.projection, made.map);
     if (made.method == model::Method::piecewise || made.method == model::Method::automatic)
       add_pieces(pointer, made);

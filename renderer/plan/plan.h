@@ -100,7 +100,6 @@ struct ViewportPlan {
   std::string name;
   PixelRect rect; ///< in output pixels, before supersampling
   projection::Map map;
-  bool folds = false; ///< the map does, see projection::folds()
   model::Method method{};
   std::optional<PieceSet>
       pieces; ///< methods piecewise and automatic (there only where it can); none: cubemap
